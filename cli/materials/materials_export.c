@@ -14,9 +14,9 @@
 
 enum { MAX_NAMES = ABBE_MATERIAL_TABLE_MAX_COUNT };
 
-typedef enum format { YAML, STORE, AGF, RII, CSV, FORMATS } format;
+typedef enum format { YAML, STORE, AGF, RII, CSV, MTLX, FORMATS } format;
 
-static const char *const format_names[FORMATS] = {"yaml", "sqlite", "agf", "rii", "csv"};
+static const char *const format_names[FORMATS] = {"yaml", "sqlite", "agf", "rii", "csv", "mtlx"};
 
 typedef struct request {
   const char *program, *table, *output;
@@ -31,8 +31,8 @@ enum { KEY_TO = ABBE_MATERIALS_KEY_OWN, KEY_RANGE, KEY_STEP, KEY_ALL, KEY_FORCE 
 
 static const struct argp_option options[] = {
     ABBE_MATERIALS_TABLE_OPTION,
-    {"to", KEY_TO, "FORMAT", 0, "yaml, sqlite, agf, rii or csv; without it, by the ending of -o",
-     0},
+    {"to", KEY_TO, "FORMAT", 0,
+     "yaml, sqlite, agf, rii, csv or mtlx; without it, by the ending of -o", 0},
     {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES | ABBE_ARGUMENT_STREAMS,
      "where to; without it or as -, to standard output", 0},
     {"force", KEY_FORCE, NULL, 0, "write over a file that is there", 0},
@@ -84,6 +84,7 @@ static const struct argp parser = {
     .doc = "Writes materials of a table in other forms: all of them, or those named.\v"
            "Examples:\n"
            "  abbe materials export --table mine.yaml -o mine.agf\n"
+           "  abbe materials export ruby n-bk7 -o stones.mtlx\n"
            "  abbe materials export water --to csv --range 400:700 --step 10\n"
            "  abbe materials export sapphire --to rii -o sapphire.yml\n"
            "  abbe materials export --to yaml -o my-copy.yaml\n\n"
@@ -97,7 +98,8 @@ static int format_of(const char *path) {
   static const struct {
     const char *ending;
     int format;
-  } endings[] = {{".yaml", YAML}, {".sqlite", STORE}, {".yml", RII}, {".agf", AGF}, {".csv", CSV}};
+  } endings[] = {{".yaml", YAML}, {".sqlite", STORE}, {".yml", RII},
+                 {".agf", AGF},   {".csv", CSV},      {".mtlx", MTLX}};
   const char *dot = path != NULL ? strrchr(path, '.') : NULL;
   for (size_t i = 0; dot != NULL && i < sizeof endings / sizeof endings[0]; i++)
     if (strcasecmp(dot, endings[i].ending) == 0) return endings[i].format;
@@ -107,9 +109,9 @@ static int format_of(const char *path) {
 static void check(request *r) {
   if (r->format < 0) r->format = format_of(r->output);
   if (r->format < 0)
-    abbe_materials_wrong_use(r->program,
-                             "to what? --to yaml, sqlite, agf, rii or csv, or -o with such an "
-                             "ending; for other renderers 'abbe export' writes a scene");
+    abbe_materials_wrong_use(
+        r->program, "to what? --to yaml, sqlite, agf, rii, csv or mtlx, or -o with such an "
+                    "ending; for other renderers 'abbe export' writes a scene");
   if (r->format == STORE && r->output == NULL)
     abbe_materials_wrong_use(r->program, "a store is a file; name it with -o FILE.sqlite");
   if ((r->format == RII || r->format == CSV) && r->names != 1)
@@ -155,6 +157,8 @@ static abbe_result write_to(const request *r, const abbe_material_table *chosen,
     return abbe_agf_write(chosen, to, report, error);
   case RII:
     return abbe_rii_write(&chosen->material[0], to, report, error);
+  case MTLX:
+    return abbe_mtlx_write(chosen, to, report, error);
   default:
     return abbe_csv_write(&chosen->material[0], &r->sampling, to, report, error);
   }

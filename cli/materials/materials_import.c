@@ -34,7 +34,7 @@ static const struct argp_option options[] = {
      "where to: YAML, or a store where it ends in .sqlite; without it, YAML to standard output", 0},
     {"force", KEY_FORCE, NULL, 0, "write over a file that is there", 0},
     {"format", KEY_FORMAT, "FORMAT", 0,
-     "agf, rii, csv, yaml or sqlite; without it, what the text says", 0},
+     "agf, rii, csv, yaml, sqlite or mtlx; without it, what the text says", 0},
     {"name", KEY_NAME, "NAME", 0, "of the one material of a file (rii, csv); else the file's", 0},
     {"prefix", KEY_PREFIX, "TEXT", 0, "before every name, such as schott-", 0},
     {"source", KEY_SOURCE, "TEXT", 0, "where measured points come from (csv)", 0},
@@ -67,7 +67,7 @@ static const abbe_take takes[] = {
 };
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
-  static const char *const formats[] = {"auto", "agf", "rii", "csv", "yaml", "sqlite"};
+  static const char *const formats[] = {"auto", "agf", "rii", "csv", "yaml", "sqlite", "mtlx"};
   request *r = state->input;
   if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
@@ -76,7 +76,7 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     return 0;
   case KEY_FORMAT:
     r->batch.import.format =
-        (abbe_import_format)abbe_command_choice(r->program, "--format", arg, formats, 6);
+        (abbe_import_format)abbe_command_choice(r->program, "--format", arg, formats, 7);
     return 0;
   case KEY_UNIT:
   case KEY_THIRD:

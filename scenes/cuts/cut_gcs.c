@@ -2,8 +2,7 @@
 
 #include "base/maths.h"
 #include "base/number.h"
-
-#include <expat.h>
+#include "base/xml.h"
 
 #include <limits.h>
 #include <math.h>
@@ -28,14 +27,6 @@ typedef struct reading {
   size_t facet_line;
 } reading;
 
-static size_t line_of(const reading *r) {
-#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9
-  return (size_t)XML_GetCurrentLineNumber64(r->parser);
-#else
-  return (size_t)XML_GetCurrentLineNumber(r->parser);
-#endif
-}
-
 /* The first failure holds; the parser goes no further. */
 static void stop(reading *r, abbe_result code) {
   if (r->result == ABBE_OK) r->result = code;
@@ -50,7 +41,7 @@ fail(reading *r, abbe_result code, const char *format, ...) {
   char prefix[300];
   va_list arguments;
   if (r->result != ABBE_OK) return;
-  snprintf(prefix, sizeof prefix, "%.255s:%zu: ", r->name, line_of(r));
+  snprintf(prefix, sizeof prefix, "%.255s:%zu: ", r->name, abbe_xml_line(r->parser));
   va_start(arguments, format);
   abbe_error_set_list(r->error, code, prefix, format, arguments);
   va_end(arguments);
@@ -102,7 +93,7 @@ static void begin_symmetry(reading *r, const char **attributes) {
   double folds = 0;
   if (text && (!abbe_number_read(text, &end, &folds) || *end != '\0' || folds != round(folds) ||
                !(folds >= 0 && folds <= MOST_FOLDS))) {
-    abbe_report_add(r->report, ABBE_NOTE_SKIPPED, line_of(r), NULL,
+    abbe_report_add(r->report, ABBE_NOTE_SKIPPED, abbe_xml_line(r->parser), NULL,
                     "the symmetry '%.40s' is no number of folds", text);
     return;
   }

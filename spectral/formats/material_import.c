@@ -27,6 +27,7 @@ static abbe_import_format marked(const char *line, size_t length) {
   if (begins(line, length, "NM ") || begins(line, length, "NM\t")) return ABBE_IMPORT_AGF;
   if (begins(line, length, "DATA:")) return ABBE_IMPORT_RII;
   if (begins(line, length, "materials:")) return ABBE_IMPORT_YAML;
+  if (begins(line, length, "<materialx")) return ABBE_IMPORT_MTLX;
   return ABBE_IMPORT_AUTO;
 }
 
@@ -168,6 +169,9 @@ static abbe_result parse_as(abbe_import_format format, const char *bytes, size_t
   case ABBE_IMPORT_AGF:
     result = abbe_agf_parse(bytes, size, path, &table, report, error);
     break;
+  case ABBE_IMPORT_MTLX:
+    result = abbe_mtlx_parse(bytes, size, path, &table, report, error);
+    break;
   case ABBE_IMPORT_YAML:
     result = abbe_material_table_parse(bytes, size, path, &table, error);
     break;
@@ -197,11 +201,13 @@ abbe_result abbe_import_parse(const char *bytes, size_t size, const char *path,
       detect(bytes, size, &format, error) == ABBE_NO_MEMORY) /* else it is of no known format */
     return ABBE_NO_MEMORY;
   if (format == ABBE_IMPORT_AUTO)
-    return abbe_error_set(error, ABBE_PARSE,
-                          "%s: is none of what can be read: a Zemax catalogue has NM lines, a file "
-                          "of refractiveindex.info 'DATA:', a table of ours 'materials:', points "
-                          "lines such as 587.6, 1.5168",
-                          path);
+    return abbe_error_set(
+        error, ABBE_PARSE,
+        "%s: is none of what can be read: a Zemax catalogue has NM lines, a file "
+        "of refractiveindex.info 'DATA:', a table of ours 'materials:', MaterialX "
+        "'<materialx', points "
+        "lines such as 587.6, 1.5168",
+        path);
   return parse_as(format, bytes, size, path, o, into, report, error);
 }
 
@@ -229,7 +235,8 @@ abbe_result abbe_import_explain(const char *path, abbe_result result, abbe_error
   static const char *const names[ABBE_IMPORT_FORMAT_COUNT] = {
       [ABBE_IMPORT_AGF] = "a Zemax catalogue",
       [ABBE_IMPORT_RII] = "a file of refractiveindex.info",
-      [ABBE_IMPORT_CSV] = "a list of points"};
+      [ABBE_IMPORT_CSV] = "a list of points",
+      [ABBE_IMPORT_MTLX] = "a MaterialX document"};
   char *bytes = NULL;
   size_t size = 0;
   if (result != ABBE_PARSE && result != ABBE_SCHEMA) return result;

@@ -22,6 +22,7 @@ typedef enum abbe_import_format {
   ABBE_IMPORT_CSV,   /* measured points: wavelength, n, and k or uncertainty */
   ABBE_IMPORT_YAML,  /* a table of ours */
   ABBE_IMPORT_STORE, /* a store of ours, SQLite */
+  ABBE_IMPORT_MTLX,  /* a MaterialX document */
   ABBE_IMPORT_FORMAT_COUNT
 } abbe_import_format;
 
@@ -34,7 +35,8 @@ typedef struct abbe_import_options {
 } abbe_import_options;
 
 /* What the bytes are: STORE where they begin as SQLite's; AGF where a line begins with NM, RII with
- * DATA:, YAML with materials:. The first such line decides, one at the margin before one that is
+ * DATA:, YAML with materials:, MTLX with
+ * <materialx. The first such line decides, one at the margin before one that is
  * indented, as remarks are. Else CSV where a line begins with two numbers, else AUTO. */
 abbe_import_format abbe_import_detect(const char *text, size_t size);
 
@@ -84,5 +86,15 @@ abbe_result abbe_agf_parse(const char *bytes, size_t size, const char *name,
  * or ABBE_PARSE, with file and line, where there is no usable index. */
 abbe_result abbe_rii_parse(const char *text, size_t size, const char *path, const char *name,
                            abbe_material *out, abbe_report *report, abbe_error *error);
+
+/* The transmitting shaders of a MaterialX document: open_pbr_surface, standard_surface and
+ * gltf_pbr.
+ *
+ * Each becomes Cauchy's two terms through its index and Abbe number, and its colour at a distance
+ * an attenuation [OpenPBR]. SR_ before a name is dropped. A shader that does not transmit, or takes
+ * its numbers from other nodes, is noted as SKIPPED. ABBE_PARSE, with the line, for what is no XML
+ * and for a number that is none, ABBE_SCHEMA where there is no such shader. */
+abbe_result abbe_mtlx_parse(const char *text, size_t size, const char *path,
+                            abbe_material_table *out, abbe_report *report, abbe_error *error);
 
 #endif

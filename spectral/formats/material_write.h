@@ -1,9 +1,9 @@
 /* material_write.h: materials as records of our own YAML tables.
  *
- * What is written reads back the same (spectral/materials/material_table.h), but for two things that a record
- * in memory no longer knows: a colour at a distance, a transmittance and k are written as the
- * attenuation that they became, and comments of the file (#) are not kept. To change one record of
- * a file and leave the rest, see spectral/editing/table_edit.h.
+ * What is written reads back the same (spectral/materials/material_table.h), but for two things
+ * that a record in memory no longer knows: a colour at a distance, a transmittance and k are
+ * written as the attenuation that they became, and comments of the file (#) are not kept. To change
+ * one record of a file and leave the rest, see spectral/editing/table_edit.h.
  */
 #ifndef ABBE_SPECTRAL_FORMATS_MATERIAL_WRITE_H
 #define ABBE_SPECTRAL_FORMATS_MATERIAL_WRITE_H
@@ -31,9 +31,10 @@ abbe_result abbe_material_table_write(const abbe_material_table *table, FILE *to
  * its square, which is a polynomial of Schott's kind with the same n; for any other the nearest
  * such polynomial is written and its largest error noted. */
 
-/* Writes the table to the stream. In report: the materials left out (SKIPPED), what AGF has no place
- * for and the errors of fits (LOST), and what is written in another way (CHANGED); what happens to
- * many materials is one note with their number. ABBE_IO where the stream fails; ABBE_NO_MEMORY. */
+/* Writes the table to the stream. In report: the materials left out (SKIPPED), what AGF has no
+ * place for and the errors of fits (LOST), and what is written in another way (CHANGED); what
+ * happens to many materials is one note with their number. ABBE_IO where the stream fails;
+ * ABBE_NO_MEMORY. */
 abbe_result abbe_agf_write(const abbe_material_table *table, FILE *to, abbe_report *report,
                            abbe_error *error);
 
@@ -47,10 +48,11 @@ typedef struct abbe_csv_sampling {
   double min_nm, max_nm, step_nm;
 } abbe_csv_sampling;
 
-/* Writes the columns wavelength_nm, n and, where the material absorbs or is a conductor, k. sampling may be NULL, and
- * is without effect on a tabulated index. ABBE_OUT_OF_RANGE where the range asked for is not the
- * record's and it does not extrapolate, ABBE_INVALID_ARGUMENT for a step that is not positive or
- * makes more than ABBE_SPECTRUM_MAX_COUNT points, ABBE_IO where the stream fails. */
+/* Writes the columns wavelength_nm, n and, where the material absorbs or is a conductor, k.
+ * sampling may be NULL, and is without effect on a tabulated index. ABBE_OUT_OF_RANGE where the
+ * range asked for is not the record's and it does not extrapolate, ABBE_INVALID_ARGUMENT for a step
+ * that is not positive or makes more than ABBE_SPECTRUM_MAX_COUNT points, ABBE_IO where the stream
+ * fails. */
 abbe_result abbe_csv_write(const abbe_material *material, const abbe_csv_sampling *sampling,
                            FILE *to, abbe_report *report, abbe_error *error);
 
@@ -63,5 +65,13 @@ abbe_result abbe_csv_write(const abbe_material *material, const abbe_csv_samplin
  * ABBE_INVALID_ARGUMENT as abbe_material_check has it, ABBE_IO where the stream fails. */
 abbe_result abbe_rii_write(const abbe_material *material, FILE *to, abbe_report *report,
                            abbe_error *error);
+
+/* A MaterialX document: an open_pbr_surface and its surfacematerial for each material.
+ *
+ * It has n_d, V_d and, of what absorbs, a colour at a depth in metres [OpenPBR]; what that loses is
+ * noted, with the largest error of n. What has no n_d and V_d in its range, and a conductor, is
+ * noted as SKIPPED. ABBE_IO where the stream fails. */
+abbe_result abbe_mtlx_write(const abbe_material_table *table, FILE *to, abbe_report *report,
+                            abbe_error *error);
 
 #endif

@@ -1,0 +1,132 @@
+/* MaterialX documents: what their numbers mean, and what is left out. */
+#include "tests/check.h"
+#include "tests/spectral/shipped_table.h"
+
+#include "spectral/formats/material_import.h"
+#include "spectral/formats/material_write.h"
+#include "spectral/materials/absorption.h"
+#include "spectral/wavelengths.h"
+
+static abbe_material_table table;
+static abbe_report report;
+
+static void clean(void) {
+  abbe_material_table_free(&table);
+  abbe_report_free(&report);
+  table = (abbe_material_table){0};
+}
+
+static abbe_result import(const char *text, abbe_error *error) {
+  clean();
+  return abbe_import_parse(text, strlen(text), "a.mtlx", NULL, &table, &report, error);
+}
+
+#define DOCUMENT(inside)                                                                           \
+  "<?xml version=\"1.0\"?>\n<materialx version=\"1.39\">\n" inside "</materialx>\n"
+#define INPUT(name, value) "<input name=\"" name "\" type=\"float\" value=\"" value "\"/>\n"
+
+static void unload(void) {
+  clean();
+  shipped_free();
+}
+GROUP(shipped_load, unload);
+
+/* OpenPBR divides the Abbe number by its scale, standard_surface has it as it is, glTF 20 over it.
+ */
+TEST(each_model_means_its_own_dispersion) {
+  const struct {
+    const char *text;
+    double n_d, v_d; /* 0: none */
+  } rows[] = {
+      {DOCUMENT("<open_pbr_surface name=\"SR_a\">" INPUT("transmission_weight", "1")
+                    INPUT("specular_ior", "2.42") INPUT("transmission_dispersion_scale", "1")
+                        INPUT("transmission_dispersion_abbe_number", "55.3") "</open_pbr_surface>"),
+       2.42, 55.3},
+      {DOCUMENT("<open_pbr_surface name=\"a\">" INPUT("transmission_weight", "0.5")
+                    INPUT("transmission_dispersion_scale", "0.25") "</open_pbr_surface>"),
+       1.5, 80},
+      {DOCUMENT(
+           "<open_pbr_surface name=\"a\">" INPUT("transmission_weight", "1") "</open_pbr_surface>"),
+       1.5, 0},
+      {DOCUMENT("<standard_surface name=\"a\">" INPUT("transmission", "1") INPUT(
+           "specular_IOR", "1.7") INPUT("transmission_dispersion", "30") "</standard_surface>"),
+       1.7, 30},
+      {DOCUMENT("<gltf_pbr name=\"a\">" INPUT("transmission", "1") INPUT("ior", "1.6")
+                    INPUT("dispersion", "0.5") "</gltf_pbr>"),
+       1.6, 40}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    OK(import(rows[i].text, &error));
+    assert_int_equal(table.count, 1);
+    assert_string_equal(table.material[0].name, "a");
+    const abbe_dispersion *d = &table.material[0].dispersion;
+    assert_near(abbe_dispersion_n(d, ABBE_LINE_D_NM), rows[i].n_d, 1e-12);
+    const double spread =
+        abbe_dispersion_n(d, ABBE_LINE_F_NM) - abbe_dispersion_n(d, ABBE_LINE_C_NM);
+    assert_near(spread, rows[i].v_d > 0 ? (rows[i].n_d - 1) / rows[i].v_d : 0, 1e-12);
+  }
+}
+
+/* The share that is left after the depth, and the name that people gave. */
+TEST(a_colour_at_a_depth_is_an_attenuation) {
+  double colour[3];
+  OK(import(DOCUMENT("<surfacematerial name=\"Wine\"><input name=\"surfaceshader\" nodename=\"s\"/>"
+                     "</surfacematerial><gltf_pbr name=\"s\">" INPUT("transmission", "1")
+                         INPUT("attenuation_color", "0.9, 0.2, 0.5")
+                             INPUT("attenuation_distance", "0.02") "</gltf_pbr>"),
+            &error));
+  assert_string_equal(table.material[0].name, "Wine");
+  abbe_absorption_colour(table.material[0].attenuation, 0.02, colour);
+  assert_near(colour[0], 0.9, 1e-12);
+  assert_near(colour[1], 0.2, 1e-12);
+  assert_near(colour[2], 0.5, 1e-12);
+}
+
+TEST(what_is_written_is_read_again) {
+  static const char *const names[] = {"diamond", "n-bk7", "emerald"};
+  abbe_material some[3];
+  char *text = NULL;
+  size_t size = 0;
+  for (int i = 0; i < 3; i++) some[i] = *find_material(&shipped, names[i]);
+  const abbe_material_table written = {.count = 3, .material = some};
+  FILE *to = open_memstream(&text, &size);
+  OK(abbe_mtlx_write(&written, to, &report, &error));
+  fclose(to);
+  OK(import(text, &error));
+  free(text);
+  assert_int_equal(table.count, 3);
+  assert_string_equal(table.material[1].name, "n_bk7");
+  for (int i = 0; i < 3; i++) {
+    const abbe_dispersion_numbers was = abbe_dispersion_describe(&some[i].dispersion),
+                                  is = abbe_dispersion_describe(&table.material[i].dispersion);
+    assert_near(is.n_d, was.n_d, 1e-6);
+    assert_near(is.v_d, was.v_d, 1e-4);
+    assert_int_equal(some[i].attenuation != NULL, table.material[i].attenuation != NULL);
+  }
+}
+
+TEST(what_cannot_be_used_is_said) {
+  const struct {
+    const char *text, *note;
+  } skipped[] = {{DOCUMENT("<open_pbr_surface name=\"s\"/>"), "no light goes through it"},
+                 {DOCUMENT("<gltf_pbr name=\"s\">" INPUT(
+                      "transmission",
+                      "1") "<input name=\"ior\" type=\"float\" nodename=\"other\"/></gltf_pbr>"),
+                  "come from another node"},
+                 {DOCUMENT("<gltf_pbr name=\"s\">" INPUT("transmission", "1")
+                               INPUT("ior", "0.5") "</gltf_pbr>"),
+                  "is not an index of refraction"},
+                 {DOCUMENT("<gltf_pbr name=\"s\">" INPUT("transmission", "1")
+                               INPUT("attenuation_color", "1, 0, 0") "</gltf_pbr>"),
+                  "a tint of its surface"}};
+  for (size_t i = 0; i < sizeof skipped / sizeof *skipped; i++) {
+    OK(import(skipped[i].text, &error));
+    assert_int_equal(table.count, i == 3);
+    assert_non_null(strstr(report.note[0].text, skipped[i].note));
+  }
+  REFUSED(ABBE_SCHEMA, "holds none of", import(DOCUMENT("<nodedef/>"), &error));
+  REFUSED(ABBE_PARSE, "a.mtlx:3: mismatched tag", import(DOCUMENT("<gltf_pbr></a>"), &error));
+  REFUSED(ABBE_PARSE, "a.mtlx:3: 'ior' is 'high'; one number is right",
+          import(DOCUMENT("<gltf_pbr>" INPUT("ior", "high") "</gltf_pbr>"), &error));
+  REFUSED(ABBE_PARSE, "three numbers such as",
+          import(DOCUMENT("<gltf_pbr>" INPUT("attenuation_color", "1, 2") "</gltf_pbr>"), &error));
+}
