@@ -72,7 +72,7 @@ int abbe_gem_diagram(int argc, char **argv) {
   if (result == ABBE_OK) result = abbe_gem_input_load(&q.in, &error);
   if (result == ABBE_OK)
     result = abbe_cut_diagram_write(q.output, &q.in.cut, &q.in.stone,
-                                    note_of(&q.in, note, sizeof note), &error);
+                                    note_of(&q.in, note, sizeof note), q.in.n, &error);
   if (result == ABBE_OK && q.in.json) {
     cJSON *root = cJSON_CreateObject();
     abbe_gem_input_describe(&q.in, root);

@@ -6,9 +6,13 @@
 #include "scenes/cuts/cut_stretch.h"
 
 #include <cjson/cJSON.h>
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+enum { OPTION_ROUGH = ABBE_GEM_KEY_OWN };
 
 static double critical_deg(double n) {
   double low, high;
@@ -30,6 +34,21 @@ static void print_main_angles(const abbe_gem_input *in) {
     before = "; ";
   }
   if (before[0] == ';') printf("\n");
+}
+
+/* Of a block of the rough's size, as large as it goes in. */
+static void print_yield(const abbe_gem_input *in) {
+  const abbe_cut_measures *m = &in->measures;
+  const double *r = in->rough_m, unit = abbe_cut_measures_fit(m, r), mm = 1e3 * unit,
+               density = abbe_gem_input_density(in);
+  printf(
+      "  rough      %.4g x %.4g x %.4g mm: a stone of %.2f x %.2f x %.2f mm at most, %.1f %% of it",
+      1e3 * r[0], 1e3 * r[1], 1e3 * r[2], mm * m->length, mm * m->width, mm * m->height,
+      100 * abbe_cut_measures_yield(m, r));
+  if (density > 0)
+    printf(", %.3f of %.3f carats", abbe_cut_measures_carats(m, unit * m->width, density),
+           5e6 * density * r[0] * r[1] * r[2]);
+  printf("\n");
 }
 
 static void print_stone(const abbe_gem_input *in) {
@@ -61,13 +80,7 @@ static void print_stone(const abbe_gem_input *in) {
            abbe_cut_measures_carats(m, in->width_m, density), density);
   else if (in->width_m > 0)
     printf("  weight     not known without a density; --density gives it\n");
-}
-
-/* Facets of the pavilion through which light that comes straight down leaves: of the material, or
- * of the index that the design is for. */
-static bool is_too_flat(const abbe_gem_input *in, const abbe_cut_tier *tier) {
-  const double n = in->material != NULL ? in->n : in->cut.refractive_index;
-  return n > 1 && tier->angle_deg < 0 && -tier->angle_deg < critical_deg(n);
+  if (in->rough_m[0] > 0) print_yield(in);
 }
 
 static void print_tiers(const abbe_gem_input *in) {
@@ -82,7 +95,7 @@ static void print_tiers(const abbe_gem_input *in) {
       printf("%s%g%s", i > 0 ? " " : "", cut->facet[tier->first + i].index,
              in->stone.fate[tier->first + i] == ABBE_CUT_FACE ? "" : "*");
     if (tier->instruction != NULL) printf("  %s", tier->instruction);
-    printf("%s\n", is_too_flat(in, tier) ? "  (below the critical angle)" : "");
+    printf("%s\n", abbe_cut_stretch_is_flat(tier, in->n) ? "  (below the critical angle)" : "");
   }
   if (in->measures.dead + in->measures.doubled > 0) printf("  * no face\n");
 }
@@ -108,6 +121,13 @@ static abbe_result print_json(const abbe_gem_input *in, abbe_error *error) {
       cJSON_AddNumberToObject(root, "carats",
                               abbe_cut_measures_carats(&in->measures, in->width_m, density));
   }
+  if (in->rough_m[0] > 0) {
+    cJSON *rough = cJSON_AddObjectToObject(root, "rough");
+    cJSON_AddItemToObject(rough, "size_m", cJSON_CreateDoubleArray(in->rough_m, 3));
+    cJSON_AddNumberToObject(rough, "width_m",
+                            abbe_cut_measures_fit(&in->measures, in->rough_m) * in->measures.width);
+    cJSON_AddNumberToObject(rough, "yield", abbe_cut_measures_yield(&in->measures, in->rough_m));
+  }
   cJSON *mains = cJSON_AddObjectToObject(root, "main_deg");
   for (int i = 0; i < 2; i++) {
     const double deg = abbe_cut_stretch_main_deg(cut, &in->stone, sides[i]);
@@ -120,7 +140,7 @@ static abbe_result print_json(const abbe_gem_input *in, abbe_error *error) {
     if (item == NULL || !cJSON_AddItemToArray(tiers, item)) continue;
     cJSON_AddNumberToObject(item, "angle_deg", tier->angle_deg);
     cJSON_AddNumberToObject(item, "distance", tier->distance);
-    cJSON_AddBoolToObject(item, "below_critical", is_too_flat(in, tier));
+    cJSON_AddBoolToObject(item, "below_critical", abbe_cut_stretch_is_flat(tier, in->n));
     if (tier->instruction != NULL) cJSON_AddStringToObject(item, "instruction", tier->instruction);
     cJSON *facets = cJSON_AddArrayToObject(item, "facets");
     for (size_t i = tier->first; i < tier->first + tier->count; i++) {
@@ -136,17 +156,57 @@ static abbe_result print_json(const abbe_gem_input *in, abbe_error *error) {
   return result;
 }
 
+static const struct argp_option options[] = {
+    {"rough", OPTION_ROUGH, "AxBxC", 0,
+     "size of a rough such as 12x9x7mm, for the largest stone that it holds and its yield", 0},
+    {0}};
+
+/* Each side in the unit that stands behind it or, there being none, behind the last one. */
+static void read_rough(abbe_gem_input *in, const char *text) {
+  const char *unit = text + strlen(text), *at = text;
+  while (unit > text && isalpha((unsigned char)unit[-1]) && unit[-1] != 'x') unit--;
+  for (int i = 0; i < 3; i++) {
+    char side[64];
+    const size_t length = strcspn(at, "x");
+    const bool has_unit = i == 2 || (length > 0 && isalpha((unsigned char)at[length - 1]));
+    snprintf(side, sizeof side, "%.*s%s", (int)(length < 40 ? length : 40), at,
+             has_unit ? "" : unit);
+    in->rough_m[i] = abbe_command_length(in->program, "--rough", side, 1e-6, 1e3);
+    at += length;
+    if (*at != (i < 2 ? 'x' : '\0')) {
+      fprintf(stderr, "%s: --rough '%s' is not three sides such as 12x9x7mm\n", in->program, text);
+      exit(ABBE_EXIT_USAGE);
+    }
+    at++;
+  }
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  abbe_gem_input *in = state->input;
+  switch (key) {
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = in;
+    return 0;
+  case OPTION_ROUGH:
+    read_rough(in, text);
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
 int abbe_gem_info(int argc, char **argv) {
   static const struct argp_child children[] = {{&abbe_gem_input_argp, 0, NULL, 0}, {0}};
   static const struct argp argp = {
-      NULL,
-      NULL,
+      options,
+      parse,
       "FILE",
       "Says what a design holds: facets, proportions, weight, critical angle, tiers.\v"
       "Designs are GemCad's .asc and .gem files and Gem Cut Studio's .gcs.\n\n"
       "Examples:\n"
       "  abbe gem info scenes/designs/brilliant-quartz.asc\n"
       "  abbe gem info scenes/designs/brilliant-diamond.asc --material diamond --width 6.5\n"
+      "  abbe gem info stone.gem --material sapphire --rough 12x9x7mm\n"
       "  abbe gem info stone.gem --weld 1e-4 --json",
       children,
       NULL,

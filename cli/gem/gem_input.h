@@ -22,6 +22,7 @@ typedef struct abbe_gem_input {
   const char *program, *path;
   const char *table_path, *material_name;
   double weld, width_m, density_g_cm3; /* 0: not given */
+  double rough_m[3];                   /* of gem info; 0: not given */
   bool json, quiet;
   abbe_report report;
   abbe_cut cut;

@@ -240,6 +240,12 @@ static void print(const request *q, const abbe_gem_stone_input *in, const abbe_g
   printf("%-8s %8.3f %9.3f %7.2f %% %8.2f\n", "best", degrees(o->crown_rad[o->best % o->crowns]),
          degrees(o->pavilion_rad[o->best / o->crowns]), 100 * best.value, 100 * best.error);
   const size_t c = o->best % o->crowns, p = o->best / o->crowns;
+  double critical, high;
+  abbe_cut_stretch_window(in->in.n, &critical, &high);
+  for (int i = 0; i < 2; i++)
+    if (degrees(i == 0 ? o->design_pavilion_rad : o->pavilion_rad[p]) < critical)
+      printf("%s's pavilion is below the critical angle, %.2f degrees: light leaks\n",
+             i == 0 ? "The design" : "The best", critical);
   if ((o->crowns > 1 && (c == 0 || c + 1 == o->crowns)) ||
       (o->pavilions > 1 && (p == 0 || p + 1 == o->pavilions)))
     printf("\nThe best lies on the grid's edge: a wider range may hold a better one.\n");

@@ -127,6 +127,14 @@ static void print_side(const char *name, const side *s) {
          s->factor);
 }
 
+/* By the same width. */
+static double weight_kept(const abbe_cut_measures *before, const abbe_cut_measures *after) {
+  return after->volume / before->volume * pow(before->width / after->width, 3);
+}
+static double height_kept(const abbe_cut_measures *before, const abbe_cut_measures *after) {
+  return after->height / before->height * before->width / after->width;
+}
+
 static void print_text(const request *q, const abbe_cut_measures *before,
                        const abbe_cut_polyhedron *stone) {
   double low, high;
@@ -145,6 +153,10 @@ static void print_text(const request *q, const abbe_cut_measures *before,
          before->side[ABBE_CUT_CROWN] / before->width, m->side[ABBE_CUT_CROWN] / m->width,
          before->side[ABBE_CUT_PAVILION] / before->width, m->side[ABBE_CUT_PAVILION] / m->width,
          before->volume / pow(before->width, 3), m->volume / pow(m->width, 3));
+  const double kept = weight_kept(before, m);
+  printf("  at the same width %.1f %% %s weight, and %.1f %% %s height\n", 100 * fabs(kept - 1),
+         kept < 1 ? "less" : "more", 100 * fabs(height_kept(before, m) - 1),
+         height_kept(before, m) < 1 ? "less" : "more");
 }
 
 static void add_side(cJSON *root, const char *name, const side *s) {
@@ -155,12 +167,15 @@ static void add_side(cJSON *root, const char *name, const side *s) {
   cJSON_AddNumberToObject(item, "tangent_ratio", s->factor);
 }
 
-static abbe_result print_json(const request *q, abbe_error *error) {
+static abbe_result print_json(const request *q, const abbe_cut_measures *before,
+                              abbe_error *error) {
   cJSON *root = cJSON_CreateObject();
   abbe_gem_input_describe(&q->in, root);
   cJSON_AddNumberToObject(root, "index", q->index);
   add_side(root, "crown", &q->crown);
   add_side(root, "pavilion", &q->pavilion);
+  cJSON_AddNumberToObject(root, "weight_kept", weight_kept(before, &q->in.measures));
+  cJSON_AddNumberToObject(root, "height_kept", height_kept(before, &q->in.measures));
   if (q->output != NULL) cJSON_AddStringToObject(root, "output", q->output);
   abbe_result result = abbe_command_print_json(root, error);
   cJSON_Delete(root);
@@ -222,7 +237,7 @@ int abbe_gem_retarget(int argc, char **argv) {
       result = abbe_gem_output_write(q.output, &q.in.cut, &q.in.stone, abbe_gem_input_scale(&q.in),
                                      q.in.material, NULL, &error);
   }
-  if (result == ABBE_OK && q.in.json) result = print_json(&q, &error);
+  if (result == ABBE_OK && q.in.json) result = print_json(&q, &before, &error);
   if (result == ABBE_OK && !q.in.json) print_text(&q, &before, &q.in.stone);
   abbe_gem_input_free(&q.in);
   return abbe_command_end(argv[0], result, &error);

@@ -5,6 +5,7 @@
 #include "base/number.h"
 #include "colorimetry/plot/chart_pen.h"
 #include "scenes/cuts/cut_measures.h"
+#include "scenes/cuts/cut_stretch.h"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
@@ -27,6 +28,7 @@ typedef struct sheet {
   const abbe_cut_polyhedron *p;
   abbe_cut_measures m;
   const char *note;
+  double n;    /* index of the stone; 0: not known */
   double down; /* how far a long heading moves everything below it */
 } sheet;
 
@@ -367,6 +369,12 @@ static double put_tier(const sheet *s, size_t t, double y, bool draw) {
   if (tier->instruction != NULL)
     end = fmax(end, put_words(s, tier->instruction, columns[3], y, page_width - margin - columns[3],
                               draw));
+  if (abbe_cut_stretch_is_flat(tier, s->n)) {
+    cairo_set_source_rgb(s->cr, 0.75, 0.1, 0.1);
+    end = fmax(end, put_words(s, "below the critical angle: light leaks", columns[3],
+                              tier->instruction != NULL ? end : y, page_width - margin - columns[3],
+                              draw));
+  }
   free(indices);
   return end;
 }
@@ -469,9 +477,9 @@ static abbe_result write_sheet(sheet *s, const char *path, FILE *to, abbe_error 
 
 abbe_result abbe_cut_diagram_write(const char *path, const abbe_cut *cut,
                                    const abbe_cut_polyhedron *polyhedron, const char *note,
-                                   abbe_error *error) {
+                                   double n, abbe_error *error) {
   abbe_file_writer writer;
-  sheet s = {.cut = cut, .p = polyhedron, .note = note};
+  sheet s = {.cut = cut, .p = polyhedron, .note = note, .n = n};
   if (!ends_with(path, ".pdf") && !ends_with(path, ".svg") && !ends_with(path, ".png"))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: a diagram wants a name that ends with .pdf, .svg or .png", path);

@@ -15,9 +15,10 @@
 #define ABBE_CUT_DIAGRAM_PIXELS 2
 
 /* Draws the cut's polyhedron. The format is the name's ending: .pdf, .svg or .png. note, under the
- * proportions, may be NULL. ABBE_INVALID_ARGUMENT for another ending, ABBE_IO, ABBE_NO_MEMORY. */
+ * proportions, may be NULL. Tiers of the pavilion below the critical angle of index n are marked,
+ * 0: none. ABBE_INVALID_ARGUMENT for another ending, ABBE_IO, ABBE_NO_MEMORY. */
 abbe_result abbe_cut_diagram_write(const char *path, const abbe_cut *cut,
                                    const abbe_cut_polyhedron *polyhedron, const char *note,
-                                   abbe_error *error);
+                                   double n, abbe_error *error);
 
 #endif

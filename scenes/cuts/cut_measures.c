@@ -99,3 +99,21 @@ double abbe_cut_measures_carats(const abbe_cut_measures *m, double width_m, doub
   const double cm3 = m->volume * pow(100 * width_m / m->width, 3);
   return cm3 * density_g_cm3 * carats_per_gram;
 }
+
+double abbe_cut_measures_fit(const abbe_cut_measures *m, const double rough_m[3]) {
+  const double size[3] = {m->length, m->width, m->height};
+  double most = 0;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) {
+      if (a == b) continue;
+      const double unit =
+          fmin(fmin(rough_m[a] / size[0], rough_m[b] / size[1]), rough_m[3 - a - b] / size[2]);
+      most = fmax(most, unit);
+    }
+  return most;
+}
+
+double abbe_cut_measures_yield(const abbe_cut_measures *m, const double rough_m[3]) {
+  return m->volume * pow(abbe_cut_measures_fit(m, rough_m), 3) /
+         (rough_m[0] * rough_m[1] * rough_m[2]);
+}

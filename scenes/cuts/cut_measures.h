@@ -51,4 +51,9 @@ void abbe_cut_measures_make(const abbe_cut *cut, const abbe_cut_polyhedron *poly
 double abbe_cut_measures_carats(const abbe_cut_measures *measures, double width_m,
                                 double density_g_cm3);
 
+/* The largest stone of these proportions in a block of those sides, lying along them any way up:
+ * metres a unit of the design; and its share of the block. */
+double abbe_cut_measures_fit(const abbe_cut_measures *measures, const double rough_m[3]);
+double abbe_cut_measures_yield(const abbe_cut_measures *measures, const double rough_m[3]);
+
 #endif

@@ -15,6 +15,13 @@ void abbe_cut_stretch_window(double n, double *low_deg, double *high_deg) {
   *high_deg = (180 - *low_deg) / 3;
 }
 
+bool abbe_cut_stretch_is_flat(const abbe_cut_tier *tier, double n) {
+  double low, high;
+  if (!(n > 1) || !(tier->angle_deg < 0)) return false;
+  abbe_cut_stretch_window(n, &low, &high);
+  return -tier->angle_deg < low;
+}
+
 double abbe_cut_stretch_angle(double main_deg, double from, double to) {
   double low[2], high[2];
   abbe_cut_stretch_window(from, &low[0], &high[0]);

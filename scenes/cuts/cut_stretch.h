@@ -21,6 +21,9 @@
  * degrees less that (it comes to the second at 180 - 3 a). Where n is below 1 / sin 45 degrees they
  * leave nothing between them. n is above 1. */
 void abbe_cut_stretch_window(double n, double *low_deg, double *high_deg);
+/* Whether light that comes straight down leaves through a tier of the pavilion: it is flatter than
+ * the critical angle of that index. Without one, 0, none is. */
+bool abbe_cut_stretch_is_flat(const abbe_cut_tier *tier, double n);
 /* The main angle for an index `to` of a design that has `main` for the index `from`: as far from
  * the middle of the window as it was. */
 double abbe_cut_stretch_angle(double main_deg, double from, double to);

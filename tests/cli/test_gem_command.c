@@ -40,6 +40,8 @@ TEST(there_and_back) {
 }
 
 TEST(other_angles) {
+  run_says(GEM "info" QUARTZ "--material quartz --rough 0.5inx9mmx12", "a stone of ");
+  run_says(GEM "retarget" QUARTZ "--material sapphire", "at the same width 6.1 % less weight");
   cJSON *json = run_json(GEM "retarget" QUARTZ "--index 1.768 -o s.asc --json", 0);
   const cJSON *pavilion = json_item(json, "pavilion");
   assert_near(json_number(pavilion, "from_deg"), 43, 0);
@@ -71,6 +73,8 @@ TEST(what_is_refused) {
       {GEM, "a verb is wanted", 2},
       {GEM "inform x.asc", "did you mean 'info'?", 2},
       {GEM "info", "which design?", 2},
+      {GEM "info" QUARTZ "--rough 12x9mm", "such as 12x9x7mm", 2},
+      {GEM "info" QUARTZ "--rough 12x9x7kg", "is not a length", 2},
       {GEM "info none.asc", "none.asc", 1},
       {GEM "info \"$house\"/README.md", "is no design that is known by its name", 1},
       {GEM "info" QUARTZ "--material gold", "is a metal", 1},

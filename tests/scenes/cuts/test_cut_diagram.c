@@ -12,7 +12,7 @@ static void write_sheet(const char *path, const char *text, const char *note) {
   abbe_cut cut = design_parse(text);
   OWNED(abbe_cut_polyhedron, p);
   OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
-  OK(abbe_cut_diagram_write(path, &cut, &p, note, &error));
+  OK(abbe_cut_diagram_write(path, &cut, &p, note, 1.54, &error));
   abbe_cut_free(&cut);
 }
 
@@ -31,6 +31,28 @@ TEST(an_svg_has_all_faces) {
     outlines += strncmp(svg_value(at, "stroke-width"), "0.7", 3) == 0;
   if (outlines < 33 + 24 + 2 * 30 || outlines > 33 + 24 + 2 * 45)
     fail_msg("%zu outlines of faces", outlines);
+}
+
+/* Design A has a pavilion of 43 degrees, and one of 44.5: below the critical angle of water, 48.6,
+ * and not of quartz. Letters are drawn as shapes in red. */
+TEST(flat_tiers_are_marked) {
+  size_t red[2];
+  for (int i = 0; i < 2; i++) {
+    FREED char *data = NULL;
+    size_t size;
+    abbe_cut cut = design_parse(design_a);
+    OWNED(abbe_cut_polyhedron, p);
+    OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
+    OK(abbe_cut_diagram_write("cut_diagram_test.svg", &cut, &p, NULL, i == 0 ? 1.544 : 1.333,
+                              &error));
+    abbe_cut_free(&cut);
+    OK(abbe_file_read("cut_diagram_test.svg", 1 << 22, &data, &size, &error));
+    assert_int_equal(unlink("cut_diagram_test.svg"), 0);
+    red[i] = 0;
+    for (const char *at = data; (at = strstr(at, "rgb(75%")) != NULL; at++) red[i]++;
+  }
+  assert_int_equal(red[0], 0);
+  assert_true(red[1] > 0);
 }
 
 TEST(a_png_is_as_long_as_its_table) {
@@ -67,7 +89,7 @@ TEST(a_pdf_and_what_is_refused) {
   OWNED(abbe_cut_polyhedron, p);
   OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "ends with .pdf, .svg or .png",
-          abbe_cut_diagram_write("sheet.jpg", &cut, &p, NULL, &error));
-  REFUSED(ABBE_IO, "", abbe_cut_diagram_write("no/such/folder/a.pdf", &cut, &p, NULL, &error));
+          abbe_cut_diagram_write("sheet.jpg", &cut, &p, NULL, 0, &error));
+  REFUSED(ABBE_IO, "", abbe_cut_diagram_write("no/such/folder/a.pdf", &cut, &p, NULL, 0, &error));
   abbe_cut_free(&cut);
 }

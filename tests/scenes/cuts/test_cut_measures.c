@@ -45,6 +45,18 @@ TEST(a_step_cut) {
   assert_near(m.table, 2 * half, 1e-7);
 }
 
+/* A step cut, 2 wide and 2 long, lies in a block as it fits best, and has its share of it. */
+TEST(a_rough_holds_it_as_it_fits) {
+  const abbe_cut_measures m = measure(design_c);
+  const double flat[] = {0.008, 0.008, 1}, tight[] = {1, m.height * 0.001, 0.006};
+  assert_true(m.height < 2);
+  assert_near(abbe_cut_measures_fit(&m, flat), 0.008 / m.height < 0.004 ? 0.008 / m.height : 0.004,
+              1e-12);
+  assert_near(abbe_cut_measures_fit(&m, tight), 0.001, 1e-12);
+  assert_near(abbe_cut_measures_yield(&m, tight), m.volume * 1e-9 / (m.height * 0.001 * 0.006),
+              1e-12);
+}
+
 TEST(an_odd_one) {
   const abbe_cut_measures m = measure(design_d);
   assert_int_equal(m.dead, 1);
