@@ -134,7 +134,7 @@ TEST(wrong_requests_get_a_sentence) {
       {M "import \"$house/spectral/materials/thesis.yaml\" -o missing/t.yaml", 1,
        "missing/t.yaml: cannot be written"},
       {M "import \"$house/spectral/materials/thesis.yaml\" >/dev/full", 1, "could not be written"},
-      {M "export", 2, "to what? --to yaml, agf"},
+      {M "export", 2, "to what? --to yaml, sqlite"},
       {M "export --to rii", 2, "holds one material; name one"},
       {M "export a b --to csv", 2, "a CSV file holds one material; name one"},
       {M "export n-bk7 --to mtlx --step 1", 2, "--range and --step go with --to csv"},
