@@ -413,9 +413,23 @@ static void tangential(const wave *w, number out[4]) {
   }
 }
 
+/* The tangential fields behind films to their front, where light of both kinds goes on alone. */
+static double pass_film(const abbe_biaxial_film *film, double k, number column[4]) {
+  number field[2][2] = {{column[1], column[2]}, {column[0], -column[3]}};
+  double decay = 0;
+  if (film == NULL) return 0;
+  abbe_film_fields(film->layer, film->count, film->reversed, k, film->lambda_nm, field, &decay);
+  column[0] = field[1][0];
+  column[1] = field[0][0];
+  column[2] = field[0][1];
+  column[3] = -field[1][1];
+  return decay;
+}
+
 /* `count` waves of one normal: one, or from an isotropic medium both s and p. */
 static void meet(const abbe_biaxial *media[2], const double n[3], const abbe_biaxial_state *coming,
-                 int first, int count, abbe_biaxial_split out[COME]) {
+                 int first, int count, const abbe_biaxial_film *film,
+                 abbe_biaxial_split out[COME]) {
   double k[3], frame[3][3], along;
   for (int i = 0; i < 3; i++) k[i] = coming->index * coming->normal[i];
   make_frame(n, k, frame, &along);
@@ -428,20 +442,23 @@ static void meet(const abbe_biaxial *media[2], const double n[3], const abbe_bia
     memcpy(incident, behind + 2 + first, (size_t)count * sizeof *incident);
   else
     come(coming, frame, behind + 2, &incident[0]);
+  double decay = 0;
   number column[4], m[4][4 + COME];
   for (int i = 0; i < 4 + count; i++) {
     tangential(i < 4 ? &waves[i] : &incident[i - 4], column);
+    if (i == 2 || i == 3) decay = pass_film(film, along, column);
     for (int r = 0; r < 4; r++) m[r][i] = i < 2 ? -column[r] : column[r];
   }
   abbe_boundary_solve(m, count);
   for (int c = 0; c < count; c++)
     for (int i = 0; i < 4; i++)
-      tell(media[i / 2], frame, i & 1, &waves[i], m[i][4 + c], incident[c].flux,
-           i < 2 ? &out[c].reflected[i] : &out[c].transmitted[i - 2]);
+      tell(media[i / 2], frame, i & 1, &waves[i], i < 2 ? m[i][4 + c] : exp(-decay) * m[i][4 + c],
+           incident[c].flux, i < 2 ? &out[c].reflected[i] : &out[c].transmitted[i - 2]);
 }
 
 void abbe_biaxial_meet(const abbe_biaxial *from, const abbe_biaxial *to, const double n[3],
-                       abbe_biaxial_mode mode, const double ray[3], abbe_biaxial_split *out) {
+                       abbe_biaxial_mode mode, const double ray[3], const abbe_biaxial_film *film,
+                       abbe_biaxial_split *out) {
   const abbe_biaxial *media[2] = {from, to};
   abbe_biaxial_state coming;
   if (!(abbe_vector_dot(ray, n) < -grazing)) {
@@ -450,19 +467,19 @@ void abbe_biaxial_meet(const abbe_biaxial *from, const abbe_biaxial *to, const d
   }
   abbe_biaxial_of_ray(from, mode, ray, &coming);
   abbe_biaxial_split made[COME];
-  meet(media, n, &coming, (int)mode, 1, made);
+  meet(media, n, &coming, (int)mode, 1, film, made);
   *out = made[0];
 }
 
 void abbe_biaxial_meet_unpolarised(const abbe_biaxial *from, const abbe_biaxial *to,
                                    const double n[3], const double ray[3],
-                                   abbe_biaxial_split *out) {
+                                   const abbe_biaxial_film *film, abbe_biaxial_split *out) {
   const abbe_biaxial *media[2] = {from, to};
   abbe_biaxial_split both[COME];
   if (abbe_vector_dot(ray, n) < -grazing) {
     abbe_biaxial_state coming;
     abbe_biaxial_of_ray(from, ABBE_BIAXIAL_FAST, ray, &coming);
-    meet(media, n, &coming, 0, COME, both);
+    meet(media, n, &coming, 0, COME, film, both);
   } else {
     for (int i = 0; i < COME; i++) graze(from, n, (abbe_biaxial_mode)i, ray, &both[i]);
   }

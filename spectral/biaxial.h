@@ -6,13 +6,16 @@
  * permittivity's ellipsoid. At a face a wave becomes up to two reflected and two transmitted ones:
  * the normal parts of their wave vectors solve a quartic, and four amplitudes make the tangential
  * fields the same on both sides [BornWolf1999, 15] [Berreman1972]. Media of two indices and of one
- * are special cases. Not magnetic, not optically active, clear at faces.
+ * are special cases. A face may have films on it (spectral/film.h). Not magnetic, not optically
+ * active, clear at faces.
  *
  * Directions are unit vectors of the way the light travels; n is the unit normal of the face on the
  * side that the light comes from.
  */
 #ifndef ABBE_SPECTRAL_BIAXIAL_H
 #define ABBE_SPECTRAL_BIAXIAL_H
+
+#include "spectral/film.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -61,19 +64,31 @@ typedef struct abbe_biaxial_wave {
   bool travels;             /* false: evanescent */
 } abbe_biaxial_wave;
 
-/* The shares of all four add up to 1: to 1e-7, and from inside a crystal to 5e-16 / cosine^2 where
- * that of the incident ray is below 1e-4. In isotropic media s and p, in this order. */
+/* Films on a face, from outside in; reversed: the light comes from inside. */
+typedef struct abbe_biaxial_film {
+  const abbe_film_layer *layer;
+  size_t count;
+  bool reversed;
+  double lambda_nm;
+} abbe_biaxial_film;
+
+/* The shares of all four add up to 1, or to what films do not absorb: to 1e-7, and from inside a
+ * crystal to 5e-16 / cosine^2 where that of the incident ray is below 1e-4. In isotropic media s
+ * and p, in this order. */
 typedef struct abbe_biaxial_split {
   abbe_biaxial_wave reflected[2], transmitted[2];
 } abbe_biaxial_split;
 
 /* What becomes of a wave whose ray comes from one medium (dot(ray, n) < 0) to the face of another.
+ * film: on the face, or NULL.
  * Where it grazes (within 1e-6) all of it goes on along the mirror direction. */
 void abbe_biaxial_meet(const abbe_biaxial *from, const abbe_biaxial *to, const double n[3],
-                       abbe_biaxial_mode mode, const double ray[3], abbe_biaxial_split *out);
+                       abbe_biaxial_mode mode, const double ray[3], const abbe_biaxial_film *film,
+                       abbe_biaxial_split *out);
 
 /* The same for unpolarised light in an isotropic medium: shares are the means over s and p. */
 void abbe_biaxial_meet_unpolarised(const abbe_biaxial *from, const abbe_biaxial *to,
-                                   const double n[3], const double ray[3], abbe_biaxial_split *out);
+                                   const double n[3], const double ray[3],
+                                   const abbe_biaxial_film *film, abbe_biaxial_split *out);
 
 #endif

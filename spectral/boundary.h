@@ -1,14 +1,22 @@
-/* boundary.h: four amplitudes from four equations, of the waves that leave a face. Internal to
- * spectral/.
+/* boundary.h: four amplitudes from four equations, of the waves that leave a face, and fields on
+ * their way through films. Internal to spectral/.
  */
 #ifndef ABBE_SPECTRAL_BOUNDARY_H
 #define ABBE_SPECTRAL_BOUNDARY_H
+
+#include "spectral/film.h"
 
 #include <complex.h>
 #include <math.h>
 
 /* Most waves that come at once: s and p. */
 enum { ABBE_BOUNDARY_COME = 2 };
+
+/* Tangential fields E and H of s (field[0]) and p (field[1]), of light of lambda_nm whose N sin is
+ * kappa, taken from behind layers to their front, times exp(-*decay). H is n_t cos_t E for s, and
+ * n_t / cos_t E for p, of a wave that goes on behind them. */
+void abbe_film_fields(const abbe_film_layer *layer, size_t count, bool reversed, double kappa,
+                      double lambda_nm, double complex field[2][2], double *decay);
 
 static inline double abbe_boundary_size(double complex z) {
   return fabs(creal(z)) + fabs(cimag(z));

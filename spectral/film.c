@@ -1,6 +1,7 @@
 #include "spectral/film.h"
 
 #include "base/maths.h"
+#include "spectral/boundary.h"
 
 #include <complex.h>
 #include <math.h>
@@ -48,18 +49,24 @@ static void pass(const medium *m, double length, double complex field[2][2], dou
   }
 }
 
+void abbe_film_fields(const abbe_film_layer *layer, size_t count, bool reversed, double kappa,
+                      double lambda_nm, double complex field[2][2], double *decay) {
+  *decay = 0;
+  for (size_t i = 0; i < count; i++) {
+    const abbe_film_layer *l = &layer[reversed ? i : count - 1 - i];
+    const medium m = medium_of(l->n, l->k, kappa);
+    pass(&m, 2 * ABBE_PI * l->nm / lambda_nm, field, decay);
+  }
+}
+
 void abbe_film_light_at(const abbe_film_layer *layer, size_t count, bool reversed, double n_from,
                         const double to[2], double cos_i, double lambda_nm, abbe_film_light *out) {
   const double c = fmin(fmax(cos_i, 0), 1), kappa = n_from * sqrt((1 - c) * (1 + c));
   const medium first = {n_from * n_from, n_from * c}, last = medium_of(to[0], to[1], kappa);
   /* E and H where the light leaves, of a wave whose magnetic field is 1 in p */
   double complex field[2][2] = {{1, last.q}, {last.q / last.square, 1}};
-  double decay = 0;
-  for (size_t i = 0; i < count; i++) {
-    const abbe_film_layer *l = &layer[reversed ? i : count - 1 - i];
-    const medium m = medium_of(l->n, l->k, kappa);
-    pass(&m, 2 * ABBE_PI * l->nm / lambda_nm, field, &decay);
-  }
+  double decay;
+  abbe_film_fields(layer, count, reversed, kappa, lambda_nm, field, &decay);
   /* r = (Y E - H) / (Y E + H), where p's Y = N^2 / q is multiplied by q and its r is of H; the wave
    * that comes brings 1 / arrives of the sum's square */
   const double complex in[2][2] = {{first.q, 1}, {first.square, first.q}};

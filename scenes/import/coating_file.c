@@ -165,11 +165,6 @@ abbe_result abbe_object_read_coating(const abbe_object_reading *r, const abbe_ma
   if (out->material == NULL)
     return abbe_yaml_fail(r->yaml, node, error,
                           "'coating' is on what refracts; this object has no 'material'");
-  if (abbe_material_is_crystal(out->material))
-    return abbe_yaml_fail(r->yaml, node, error,
-                          "the material '%s' is a crystal, on which films are not modelled: leave "
-                          "the 'coating' out, or take a material with one index",
-                          out->material->name);
   const bool many = abbe_yaml_is_sequence(r->yaml, node);
   const size_t count = many ? abbe_yaml_count(r->yaml, node) : 1;
   if (count == 0 || count > ABBE_COATINGS_MOST)

@@ -175,7 +175,7 @@ static void reflect(const abbe_biaxial *m, double degree, double out[2][2]) {
   down(degree, in);
   for (int from = 0; from < 2; from++) {
     abbe_biaxial_split s;
-    abbe_biaxial_meet(&air, m, up, (abbe_biaxial_mode)from, in, &s);
+    abbe_biaxial_meet(&air, m, up, (abbe_biaxial_mode)from, in, NULL, &s);
     for (int to = 0; to < 2; to++) out[from][to] = s.reflected[to].share;
     assert_near(total(&s), 1, 1e-13);
   }
@@ -188,7 +188,7 @@ TEST(air_to_sphene) {
   assert_near(r[1][1], 0.0316583, 1e-7);
   abbe_biaxial_split s;
   down(45, in);
-  abbe_biaxial_meet(&air, &sphene, up, (abbe_biaxial_mode)1, in, &s);
+  abbe_biaxial_meet(&air, &sphene, up, (abbe_biaxial_mode)1, in, NULL, &s);
   const abbe_biaxial_wave *p = &s.transmitted[s.transmitted[0].share > 0.5 ? 0 : 1];
   assert_near(p->state.index, 1.9166925, 1e-7);
   assert_near(p->state.normal[0], 0.368920, 1e-6);
@@ -200,7 +200,7 @@ TEST(a_slab_of_sphene_shifts_one_wave) {
   const double r = sqrt(0.5), in[3] = {0, 0, -1};
   const abbe_biaxial m = {{1.900, 1.907, 2.034}, {{r, 0, -r}, {0, 1, 0}, {r, 0, r}}};
   abbe_biaxial_split s;
-  abbe_biaxial_meet_unpolarised(&air, &m, up, in, &s);
+  abbe_biaxial_meet_unpolarised(&air, &m, up, in, NULL, &s);
   double shift[2];
   for (int i = 0; i < 2; i++)
     shift[i] = fabs(s.transmitted[i].state.ray[0] / s.transmitted[i].state.ray[2]);
@@ -254,7 +254,7 @@ TEST(two_indices_are_uniaxial) {
       const abbe_biaxial_mode mode =
           (wave == 0) == (o[0] < e[0]) ? ABBE_BIAXIAL_FAST : ABBE_BIAXIAL_SLOW;
       abbe_uniaxial_meet(&u[0], &u[1], up, (abbe_uniaxial_mode)wave, in, &x);
-      abbe_biaxial_meet(&m[0], &m[1], up, mode, in, &y);
+      abbe_biaxial_meet(&m[0], &m[1], up, mode, in, NULL, &y);
       assert_near(total(&y), 1, 1e-12);
       for (int k = 0; k < 4; k++) {
         const abbe_uniaxial_wave *a = k < 2 ? &x.reflected[k] : &x.transmitted[k - 2];
@@ -291,13 +291,13 @@ TEST(energy_is_conserved) {
     while (in[2] > -1e-3);
     for (int mode = 0; mode < 2; mode++) {
       abbe_biaxial_split s;
-      abbe_biaxial_meet(&a, i % 2 ? &b : &air, up, (abbe_biaxial_mode)mode, in, &s);
+      abbe_biaxial_meet(&a, i % 2 ? &b : &air, up, (abbe_biaxial_mode)mode, in, NULL, &s);
       worst = fmax(worst, fabs(total(&s) - 1));
-      abbe_biaxial_meet(&b, &a, up, (abbe_biaxial_mode)mode, in, &s);
+      abbe_biaxial_meet(&b, &a, up, (abbe_biaxial_mode)mode, in, NULL, &s);
       worst = fmax(worst, fabs(total(&s) - 1));
     }
     abbe_biaxial_split s;
-    abbe_biaxial_meet_unpolarised(&air, &a, up, in, &s);
+    abbe_biaxial_meet_unpolarised(&air, &a, up, in, NULL, &s);
     worst = fmax(worst, fabs(total(&s) - 1));
   }
   if (!(worst < 1e-7)) fail_msg("energy is off by up to %g", worst);
@@ -314,13 +314,13 @@ TEST(ways_back_have_the_same_share) {
     while (in[2] > -0.2);
     for (int mode = 0; mode < 2; mode++) {
       abbe_biaxial_split s, t;
-      abbe_biaxial_meet(&a, &b, up, (abbe_biaxial_mode)mode, in, &s);
+      abbe_biaxial_meet(&a, &b, up, (abbe_biaxial_mode)mode, in, NULL, &s);
       for (int k = 0; k < 2; k++) {
         const abbe_biaxial_wave *w = &s.transmitted[k];
         if (!w->travels || w->share < 1e-3 || fabs(w->state.ray[2]) < 0.05) continue;
         double back[3], share = 0;
         for (int c = 0; c < 3; c++) back[c] = -w->state.ray[c];
-        abbe_biaxial_meet(&b, &a, below, w->mode, back, &t);
+        abbe_biaxial_meet(&b, &a, below, w->mode, back, NULL, &t);
         for (int j = 0; j < 2; j++)
           if (t.transmitted[j].travels && fabs(dot(t.transmitted[j].state.ray, in) + 1) < 1e-9 &&
               t.transmitted[j].mode == (abbe_biaxial_mode)mode)
@@ -349,7 +349,7 @@ TEST(along_an_optic_axis_energy_closes) {
         unit(ray);
         abbe_biaxial_split out;
         for (int mode = 0; mode < 2; mode++) {
-          abbe_biaxial_meet(&air, &m, up, (abbe_biaxial_mode)mode, ray, &out);
+          abbe_biaxial_meet(&air, &m, up, (abbe_biaxial_mode)mode, ray, NULL, &out);
           assert_near(total(&out), 1, 1e-7);
         }
       }
@@ -364,14 +364,14 @@ TEST(awkward_directions) {
       abbe_biaxial_split s;
       const double ray[3] = {sqrt(1 - off * off), 0, -off};
       for (int mode = 0; mode < 2; mode++) {
-        abbe_biaxial_meet(&air, &m, up, (abbe_biaxial_mode)mode, ray, &s);
+        abbe_biaxial_meet(&air, &m, up, (abbe_biaxial_mode)mode, ray, NULL, &s);
         assert_near(total(&s), 1, 1e-7);
-        abbe_biaxial_meet(&m, &air, up, (abbe_biaxial_mode)mode, ray, &s);
+        abbe_biaxial_meet(&m, &air, up, (abbe_biaxial_mode)mode, ray, NULL, &s);
         /* the quartic's roots of the wave that comes and of its mirror image all but meet */
         assert_near(total(&s), 1, 1e-7 + 5e-16 / (off * off));
         for (int side = -1; side <= 1; side += 2) {
           const double c = asin(1 / m.n[1]) + side * off, edge[3] = {sin(c), 0, -cos(c)};
-          abbe_biaxial_meet(&m, &air, up, (abbe_biaxial_mode)mode, edge, &s);
+          abbe_biaxial_meet(&m, &air, up, (abbe_biaxial_mode)mode, edge, NULL, &s);
           assert_near(total(&s), 1, 1e-7);
         }
       }
@@ -388,4 +388,70 @@ TEST(absorption_goes_by_the_field) {
   assert_near(abbe_biaxial_attenuation(&m, a, s.field), 1563.166, 5e-4);
   abbe_biaxial_of_normal(&m, S, normal, &s);
   assert_near(abbe_biaxial_attenuation(&m, a, s.field), 2000, 1e-9);
+}
+
+/* ---- films ---- */
+
+/* Of three indices alike it is a film on glass, for s and p and both ways. */
+TEST(a_film_on_a_crystal_of_one_index_is_one_on_glass) {
+  const abbe_film_layer layer[3] = {{1.38, 0, 99.6}, {2.4, 0.3, 60}, {0.42, 2.4, 12}};
+  const double n = 1.61;
+  for (int i = 0; i < 60; i++) {
+    const bool inside = i % 2 != 0;
+    /* not quite alike, so that it is solved as a crystal */
+    const abbe_biaxial stone = {{n - 1e-12, n, n + 1e-12}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    const double angle = (0.5 + i) / 60 * 1.5, ray[3] = {sin(angle), 0, -cos(angle)};
+    const double to[2] = {inside ? 1 : n, 0};
+    const abbe_biaxial_film film = {layer, 3, inside, 450 + 3 * i};
+    abbe_biaxial_split split;
+    abbe_film_light light;
+    abbe_film_light_at(layer, 3, inside, inside ? n : 1, to, cos(angle), film.lambda_nm, &light);
+    double r, t, back = 0, on = 0;
+    abbe_film_unpolarised(&light, &r, &t);
+    if (inside) {
+      for (int mode = 0; mode < 2; mode++) {
+        abbe_biaxial_meet(&stone, &air, up, (abbe_biaxial_mode)mode, ray, &film, &split);
+        for (int k = 0; k < 2; k++) {
+          back += split.reflected[k].share / 2;
+          on += split.transmitted[k].share / 2;
+        }
+      }
+    } else {
+      abbe_biaxial_meet_unpolarised(&air, &stone, up, ray, &film, &split);
+      for (int k = 0; k < 2; k++) {
+        back += split.reflected[k].share;
+        on += split.transmitted[k].share;
+      }
+    }
+    assert_near(back, r, 1e-7);
+    assert_near(on, t, 1e-7);
+  }
+}
+
+/* Clear films keep the energy of any crystal's waves, and one of half a wave is none. */
+TEST(films_on_crystals_keep_energy) {
+  const double r = sqrt(1.0 / 3);
+  const abbe_biaxial stone = {{1.900, 1.907, 2.034},
+                              {{0.8, 0.6, 0},
+                               {-0.6 * r, 0.8 * r, sqrt(1 - r * r)},
+                               {0.6 * sqrt(1 - r * r), -0.8 * sqrt(1 - r * r), r}}};
+  for (int i = 0; i < 200; i++) {
+    const double angle = (0.5 + i) / 200 * 1.5, turn = 2.4 * i,
+                 ray[3] = {sin(angle) * cos(turn), sin(angle) * sin(turn), -cos(angle)};
+    const abbe_film_layer layer[2] = {{1.2 + 0.01 * i, 0, 3.0 * i}, {2.4, 0, 60}},
+                          half = {1.38, 0, 275 / 1.38};
+    const abbe_biaxial_film film = {layer, 2, true, 550}, none = {&half, 1, true, 550};
+    for (int mode = 0; mode < 2; mode++) {
+      abbe_biaxial_split a, b;
+      abbe_biaxial_meet(&stone, &air, up, (abbe_biaxial_mode)mode, ray, &film, &a);
+      double sum = 0;
+      for (int k = 0; k < 2; k++) sum += a.reflected[k].share + a.transmitted[k].share;
+      assert_near(sum, 1, 1e-7);
+      const double down[3] = {0, 0, -1};
+      const abbe_biaxial upright = {{1.900, 1.907, 2.034}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+      abbe_biaxial_meet(&upright, &air, up, (abbe_biaxial_mode)mode, down, &none, &a);
+      abbe_biaxial_meet(&upright, &air, up, (abbe_biaxial_mode)mode, down, NULL, &b);
+      for (int k = 0; k < 2; k++) assert_near(a.reflected[k].share, b.reflected[k].share, 1e-12);
+    }
+  }
 }

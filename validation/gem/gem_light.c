@@ -93,7 +93,10 @@ static void copy(const float from[3], float to[3]) {
 static meeting meet_crystal(const abbe_gem_stone *s, size_t k, bool inside, const float n[3],
                             const float d[3], uint8_t wave, float chance) {
   abbe_wave_ways ways;
-  abbe_media_ways(&s->media, inside ? 0 : -1, inside ? -1 : 0, (uint32_t)k, 0, n, d, wave, &ways);
+  abbe_wave_face face = {inside ? 0 : -1, inside ? -1 : 0, -1, !inside, .wave = wave};
+  copy(n, face.n);
+  copy(d, face.d);
+  abbe_media_ways(&s->media, &face, (uint32_t)k, 0, &ways);
   const abbe_wave_way *back = abbe_wave_ways_choose(&ways, 0, chance),
                       *through = abbe_wave_ways_choose(&ways, 1, chance);
   meeting m = {.reflected = ways.reflected, .wave = inside ? back->wave : through->wave};

@@ -1,6 +1,7 @@
 #include "validation/transport/double_refraction.h"
 
 #include <math.h>
+#include <string.h>
 
 static bool is_crystal(const abbe_uniaxial *m) {
   return m->n_o != m->n_e;
@@ -36,7 +37,7 @@ static void to_unit(const float n[3], const float d[3], double normal[3], double
 }
 
 /* Shares that add up to 1. */
-static void balance(size_t reflected, abbe_wave_ways *out) {
+static void balance(size_t reflected, bool film, abbe_wave_ways *out) {
   float all = 0;
   for (size_t i = 0; i < out->count; i++) all += out->way[i].share;
   for (size_t i = 0; i < out->count; i++) {
@@ -44,6 +45,7 @@ static void balance(size_t reflected, abbe_wave_ways *out) {
     if (i < reflected) out->reflected += out->way[i].share;
   }
   if (reflected == out->count) out->reflected = 1;
+  out->passes = film ? fminf(all, 1) : 1;
 }
 
 void abbe_wave_ways_find(const abbe_uniaxial *from, const abbe_uniaxial *to, const float n[3],
@@ -59,7 +61,7 @@ void abbe_wave_ways_find(const abbe_uniaxial *from, const abbe_uniaxial *to, con
   add_side(from, split.reflected, true, out);
   const size_t reflected = out->count;
   add_side(to, split.transmitted, false, out);
-  balance(reflected, out);
+  balance(reflected, false, out);
 }
 
 /* From the faster and the slower one to the ordinary and the other one of a crystal of two indices,
@@ -86,19 +88,21 @@ static void add_waves(const abbe_biaxial *medium, const abbe_biaxial_wave wave[2
 }
 
 void abbe_wave_ways_find_biaxial(const abbe_biaxial *from, const abbe_biaxial *to, const float n[3],
-                                 const float d[3], uint8_t wave, abbe_wave_ways *out) {
+                                 const float d[3], uint8_t wave, const abbe_biaxial_film *film,
+                                 abbe_wave_ways *out) {
   double normal[3], ray[3];
   abbe_biaxial_split split;
   to_unit(n, d, normal, ray);
   if (from->n[0] != from->n[1] || from->n[1] != from->n[2])
-    abbe_biaxial_meet(from, to, normal, (abbe_biaxial_mode)rename_wave(from, wave), ray, &split);
+    abbe_biaxial_meet(from, to, normal, (abbe_biaxial_mode)rename_wave(from, wave), ray, film,
+                      &split);
   else
-    abbe_biaxial_meet_unpolarised(from, to, normal, ray, &split);
+    abbe_biaxial_meet_unpolarised(from, to, normal, ray, film, &split);
   *out = (abbe_wave_ways){0};
   add_waves(from, split.reflected, true, out);
   const size_t reflected = out->count;
   add_waves(to, split.transmitted, false, out);
-  balance(reflected, out);
+  balance(reflected, film != NULL, out);
 }
 
 void abbe_media_crystal(const abbe_media *m, int i, uint32_t k, float f, abbe_uniaxial *out) {
@@ -112,32 +116,47 @@ void abbe_media_crystal(const abbe_media *m, int i, uint32_t k, float f, abbe_un
 
 /* Any medium with its axes. */
 static void place(const abbe_media *m, int i, uint32_t k, float f, abbe_biaxial *out) {
-  if (abbe_media_is_crystal(m, i)) {
+  if (abbe_media_is_crystal(m, i) && m->principal != NULL) {
     abbe_media_axes(m, i, k, f, out);
+    return;
+  }
+  if (abbe_media_is_crystal(m, i)) {
+    abbe_uniaxial two;
+    abbe_media_crystal(m, i, k, f, &two);
+    *out = (abbe_biaxial){.n = {two.n_o, two.n_o, two.n_e}};
+    memcpy(out->axis, m->frame[i], sizeof out->axis);
     return;
   }
   *out = (abbe_biaxial){.axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   for (int axis = 0; axis < 3; axis++) out->n[axis] = (double)abbe_media_n(m, i, k, f);
 }
 
-static void biaxial_ways(const abbe_media *m, int from, int to, uint32_t step, float within,
-                         const float n[3], const float d[3], uint8_t wave, abbe_wave_ways *out) {
+static void biaxial_ways(const abbe_media *m, const abbe_wave_face *face, uint32_t step,
+                         float within, abbe_wave_ways *out) {
   abbe_biaxial media[2];
-  place(m, from, step, within, &media[0]);
-  place(m, to, step, within, &media[1]);
-  abbe_wave_ways_find_biaxial(&media[0], &media[1], n, d, wave, out);
+  abbe_film_layer layer[ABBE_FILM_MOST_LAYERS];
+  abbe_biaxial_film film = {.layer = layer, .reversed = !face->entering};
+  place(m, face->from, step, within, &media[0]);
+  place(m, face->to, step, within, &media[1]);
+  if (face->film >= 0) {
+    film.count = m->films.layers[face->film];
+    film.lambda_nm = abbe_films_at(&m->films, face->film, step, within, layer);
+  }
+  abbe_wave_ways_find_biaxial(&media[0], &media[1], face->n, face->d, face->wave,
+                              face->film >= 0 ? &film : NULL, out);
 }
 
-void abbe_media_ways(const abbe_media *m, int from, int to, uint32_t step, float within,
-                     const float n[3], const float d[3], uint8_t wave, abbe_wave_ways *out) {
-  if (abbe_media_is_biaxial(m, from) || abbe_media_is_biaxial(m, to)) {
-    biaxial_ways(m, from, to, step, within, n, d, wave, out);
+void abbe_media_ways(const abbe_media *m, const abbe_wave_face *face, uint32_t step, float within,
+                     abbe_wave_ways *out) {
+  if (face->film >= 0 || abbe_media_is_biaxial(m, face->from) ||
+      abbe_media_is_biaxial(m, face->to)) {
+    biaxial_ways(m, face, step, within, out);
     return;
   }
   abbe_uniaxial media[2];
-  abbe_media_crystal(m, from, step, within, &media[0]);
-  abbe_media_crystal(m, to, step, within, &media[1]);
-  abbe_wave_ways_find(&media[0], &media[1], n, d, wave, out);
+  abbe_media_crystal(m, face->from, step, within, &media[0]);
+  abbe_media_crystal(m, face->to, step, within, &media[1]);
+  abbe_wave_ways_find(&media[0], &media[1], face->n, face->d, face->wave, out);
 }
 
 const abbe_wave_way *abbe_wave_ways_choose(const abbe_wave_ways *w, float chance, float which) {

@@ -62,20 +62,26 @@ void abbe_films_free(abbe_films *f) {
   *f = (abbe_films){0};
 }
 
-float abbe_films_reflectance(const abbe_films *f, int film, bool entering, float n_from, float n_to,
-                             float cos_i, uint32_t k, float within, float *passes) {
-  const size_t count = f->layers[film];
+double abbe_films_at(const abbe_films *f, int film, uint32_t k, float within,
+                     abbe_film_layer layer[ABBE_FILM_MOST_LAYERS]) {
   const abbe_film_layer *low = f->layer[(size_t)film * (f->steps + 1) + k],
                         *high = f->layer[(size_t)film * (f->steps + 1) + k + 1];
-  const double part = (double)within, to[2] = {(double)n_to, 0};
+  const double part = (double)within;
+  for (size_t i = 0; i < f->layers[film]; i++)
+    layer[i] = (abbe_film_layer){low[i].n + part * (high[i].n - low[i].n),
+                                 low[i].k + part * (high[i].k - low[i].k), low[i].nm};
+  return f->lambda_nm[k] + part * (f->lambda_nm[k + 1] - f->lambda_nm[k]);
+}
+
+float abbe_films_reflectance(const abbe_films *f, int film, bool entering, float n_from, float n_to,
+                             float cos_i, uint32_t k, float within, float *passes) {
+  const double to[2] = {(double)n_to, 0};
   abbe_film_layer at[ABBE_FILM_MOST_LAYERS];
   abbe_film_light light;
   double reflected, transmitted;
-  for (size_t i = 0; i < count; i++)
-    at[i] = (abbe_film_layer){low[i].n + part * (high[i].n - low[i].n),
-                              low[i].k + part * (high[i].k - low[i].k), low[i].nm};
-  abbe_film_light_at(at, count, !entering, (double)n_from, to, (double)cos_i,
-                     f->lambda_nm[k] + part * (f->lambda_nm[k + 1] - f->lambda_nm[k]), &light);
+  const double lambda_nm = abbe_films_at(f, film, k, within, at);
+  abbe_film_light_at(at, f->layers[film], !entering, (double)n_from, to, (double)cos_i, lambda_nm,
+                     &light);
   abbe_film_unpolarised(&light, &reflected, &transmitted);
   const double sum = reflected + transmitted;
   *passes = (float)fmin(sum, 1);

@@ -62,6 +62,11 @@ static inline int abbe_films_on(const abbe_films *f, uint32_t refractor, uint32_
   return number == 0 ? -1 : (int)f->first[refractor] + number - 1;
 }
 
+/* The layers of a film within step k at the share `within` of it, of which it has layers[film], and
+ * the wavelength there. */
+double abbe_films_at(const abbe_films *films, int film, uint32_t k, float within,
+                     abbe_film_layer layer[ABBE_FILM_MOST_LAYERS]);
+
 /* Light that comes from index n_from to n_to, from outside where it is entering, within step k at
  * the share `within` of it. *passes: what is not absorbed, 0 to 1; returns the share of that which
  * is reflected. */

@@ -47,36 +47,27 @@ static void disperse(abbe_eye_path *p, uint32_t wave) {
 
 typedef struct crossing {
   abbe_media_set before, after;
-  int from, to;
-  float n[3], cos_i; /* the normal on the path's side */
-  bool entering;
-  int film;     /* on the face, or -1 */
-  bool crystal; /* on either side; then also how the path comes: */
-  float d[3];
-  uint8_t wave;
+  abbe_wave_face face; /* the normal on the path's side */
+  float cos_i;
+  bool crystal; /* on either side */
 } crossing;
 
 static void cross(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_hit *hit,
                   crossing *x) {
   float along = abbe_eye_dot(p->d, hit->ng), shaded = abbe_eye_dot(p->d, hit->n);
-  x->entering = along < 0;
-  const float *outside = (shaded < 0) == x->entering ? hit->n : hit->ng;
-  for (int k = 0; k < 3; k++) x->n[k] = x->entering ? outside[k] : -outside[k];
-  float cosine = -abbe_eye_dot(p->d, x->n);
+  x->face.entering = along < 0;
+  const float *outside = (shaded < 0) == x->face.entering ? hit->n : hit->ng;
+  for (int k = 0; k < 3; k++) x->face.n[k] = x->face.entering ? outside[k] : -outside[k];
+  float cosine = -abbe_eye_dot(p->d, x->face.n);
   x->cos_i = cosine < 1 ? cosine : 1;
-  abbe_media_cross(p->inside, hit->surface->index, x->entering, &x->before, &x->after);
-  x->from = abbe_media_of(x->before);
-  x->to = abbe_media_of(x->after);
-  x->film = abbe_media_film(c->w->media, x->from, x->to, hit);
-  x->crystal =
-      abbe_media_is_crystal(c->w->media, x->from) || abbe_media_is_crystal(c->w->media, x->to);
-  memcpy(x->d, p->d, sizeof x->d);
-  x->wave = p->wave;
-}
-
-static void find_ways(const abbe_eye_context *c, const crossing *x, uint32_t step, float within,
-                      abbe_wave_ways *out) {
-  abbe_media_ways(c->w->media, x->from, x->to, step, within, x->n, x->d, x->wave, out);
+  abbe_media_cross(p->inside, hit->surface->index, x->face.entering, &x->before, &x->after);
+  x->face.from = abbe_media_of(x->before);
+  x->face.to = abbe_media_of(x->after);
+  x->face.film = abbe_media_film(c->w->media, x->face.from, x->face.to, hit);
+  x->crystal = abbe_media_is_crystal(c->w->media, x->face.from) ||
+               abbe_media_is_crystal(c->w->media, x->face.to);
+  memcpy(x->face.d, p->d, sizeof x->face.d);
+  x->face.wave = p->wave;
 }
 
 /* way: eta, the cosine beyond, and what a film does not absorb; of the latter a share. */
@@ -85,17 +76,19 @@ static float reflectance_at(const abbe_eye_context *c, const crossing *x, uint32
   const abbe_media *m = c->w->media;
   if (x->crystal) {
     abbe_wave_ways ways;
-    find_ways(c, x, step, within, &ways);
-    way[0] = way[1] = way[2] = 1;
+    abbe_media_ways(c->w->media, &x->face, step, within, &ways);
+    way[0] = way[1] = 1;
+    way[2] = ways.passes;
     return ways.reflected;
   }
-  const float n[2] = {abbe_media_n(m, x->from, step, within), abbe_media_n(m, x->to, step, within)};
+  const float n[2] = {abbe_media_n(m, x->face.from, step, within),
+                      abbe_media_n(m, x->face.to, step, within)};
   way[0] = n[0] / n[1];
   way[2] = 1;
   const float bare = abbe_interface_reflectance(x->cos_i, way[0], &way[1]);
-  return x->film < 0 ? bare
-                     : abbe_films_reflectance(&m->films, x->film, x->entering, n[0], n[1], x->cos_i,
-                                              step, within, &way[2]);
+  return x->face.film < 0 ? bare
+                          : abbe_films_reflectance(&m->films, x->face.film, x->face.entering, n[0],
+                                                   n[1], x->cos_i, step, within, &way[2]);
 }
 
 /* Sends the path on, mirrored or refracted. */
@@ -103,10 +96,10 @@ static void send(abbe_eye_path *p, const abbe_hit *hit, const crossing *x, bool 
                  float cos_t) {
   float d[3];
   if (reflects)
-    abbe_interface_reflect(p->d, x->n, x->cos_i, d);
+    abbe_interface_reflect(p->d, x->face.n, x->cos_i, d);
   else
-    abbe_interface_refract(p->d, x->n, eta, x->cos_i, cos_t, d);
-  abbe_interface_keep_side(hit->ng, x->entering == reflects ? 1 : -1, d);
+    abbe_interface_refract(p->d, x->face.n, eta, x->cos_i, cos_t, d);
+  abbe_interface_keep_side(hit->ng, x->face.entering == reflects ? 1 : -1, d);
   memcpy(p->d, d, sizeof d);
   p->inside = reflects ? x->before : x->after;
   abbe_geometry_leave(hit, d, p->o);
@@ -115,7 +108,7 @@ static void send(abbe_eye_path *p, const abbe_hit *hit, const crossing *x, bool 
 static void send_as(abbe_eye_path *p, const abbe_hit *hit, const crossing *x,
                     const abbe_wave_way *way) {
   memcpy(p->d, way->d, sizeof p->d);
-  abbe_interface_keep_side(hit->ng, x->entering == way->reflected ? 1 : -1, p->d);
+  abbe_interface_keep_side(hit->ng, x->face.entering == way->reflected ? 1 : -1, p->d);
   p->inside = way->reflected ? x->before : x->after;
   p->wave = way->wave;
   abbe_geometry_leave(hit, p->d, p->o);
@@ -132,8 +125,8 @@ static bool matched_rules(const abbe_eye_context *c, abbe_eye_path *p, bool refl
 
 static bool disperses(const abbe_eye_context *c, const crossing *x) {
   const bool *d = c->w->media->dispersive;
-  return c->w->bands->count > 0 || x->film >= 0 || (x->from >= 0 && d[x->from]) ||
-         (x->to >= 0 && d[x->to]);
+  return c->w->bands->count > 0 || x->face.film >= 0 || (x->face.from >= 0 && d[x->face.from]) ||
+         (x->face.to >= 0 && d[x->face.to]);
 }
 
 static bool is_coloured_haze(const abbe_eye_context *c, const abbe_eye_path *p) {
@@ -205,16 +198,17 @@ static bool scatter_waves(const abbe_eye_context *c, branches *b, abbe_eye_path 
   const abbe_eye_path first = *p;
   const float least = c->w->least_branch;
   abbe_wave_ways ways;
-  find_ways(c, x, p->step, p->within, &ways);
+  abbe_media_ways(c->w->media, &x->face, p->step, p->within, &ways);
   if (b->count + 3 > BRANCHES_ROOM) {
     send_as(p, hit, x, abbe_wave_ways_choose(&ways, random[0], random[3]));
+    p->share *= ways.passes;
     return true;
   }
   float sum = random[0];
   bool goes = false;
   for (size_t i = 0; i < ways.count; i++) {
     abbe_eye_path next = first;
-    next.share *= ways.way[i].share;
+    next.share *= ways.way[i].share * ways.passes;
     next.branch *= ways.way[i].share;
     if (next.branch < least) {
       const float before = sum;
@@ -298,7 +292,7 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
   p->lobe = 0;
   crossing x;
   cross(c, p, &hit, &x);
-  if (x.film < 0 && abbe_media_same(c->w->media, x.from, x.to)) {
+  if (x.face.film < 0 && abbe_media_same(c->w->media, x.face.from, x.face.to)) {
     p->inside = x.after;
     abbe_geometry_leave(&hit, p->d, p->o);
     return true;
@@ -332,7 +326,7 @@ static void follow_mirror(const abbe_eye_context *c, const abbe_eye_path *first,
     p.share *= share * way[2];
   } else {
     float sum[3] = {0};
-    const uint32_t bands = x->film < 0 ? MIRROR_BANDS : FILM_BANDS, parts = ALL_PARTS / bands;
+    const uint32_t bands = x->face.film < 0 ? MIRROR_BANDS : FILM_BANDS, parts = ALL_PARTS / bands;
     const uint32_t steps = (uint32_t)w->sampling->steps, size = steps / bands;
     for (uint32_t b = 0; b < bands; b++) {
       const float part = reflectance_at(c, x, b * size + size / 2, 0, way), share = part * way[2];
@@ -359,12 +353,12 @@ static void follow_mirror(const abbe_eye_context *c, const abbe_eye_path *first,
 static void follow_waves(const abbe_eye_context *c, const abbe_eye_path *first, const abbe_hit *hit,
                          const crossing *x) {
   abbe_wave_ways ways;
-  find_ways(c, x, first->step, first->within, &ways);
+  abbe_media_ways(c->w->media, &x->face, first->step, first->within, &ways);
   for (size_t i = 0; i < ways.count; i++) {
     if (ways.way[i].reflected) continue;
     abbe_eye_path p = *first;
     p.id += HEROES * (uint32_t)ways.way[i].wave * 0x10000u;
-    p.share *= ways.way[i].share;
+    p.share *= ways.way[i].share * ways.passes;
     send_as(&p, hit, x, &ways.way[i]);
     follow(c, &p);
   }
@@ -430,7 +424,7 @@ static void walk_on(const abbe_eye_context *c, abbe_eye_path *p, bool met, const
   }
   crossing at;
   cross(c, p, &hit, &at);
-  if (at.film < 0 && abbe_media_same(c->w->media, at.from, at.to)) {
+  if (at.face.film < 0 && abbe_media_same(c->w->media, at.face.from, at.face.to)) {
     p->id++;
     p->inside = at.after;
     abbe_geometry_leave(&hit, p->d, p->o);

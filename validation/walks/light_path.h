@@ -156,18 +156,19 @@ static inline void abbe_light_path_roughen(const abbe_inner_rules *r, const abbe
 }
 
 /* At a face of a crystal: puts into lane k, in place of what it has, where the path goes on as that
- * lane's number decides. Returns the wave that it goes on as. */
+ * lane's number decides; *passes as of a film. Returns the wave that it goes on as. */
 static inline uint8_t abbe_light_path_bend(const abbe_inner_rules *r, const abbe_media *media,
-                                           const abbe_light_path *s, int from, int to,
-                                           abbe_scatter *p, size_t k) {
-  float d[3], n[3], ng[3], random[4];
+                                           const abbe_light_path *s, abbe_wave_face *face,
+                                           abbe_scatter *p, size_t k, float *passes) {
+  float d[3], ng[3], random[4];
   for (int i = 0; i < 3; i++) {
-    d[i] = p->d[i][k];
-    n[i] = p->n[i][k];
+    face->d[i] = p->d[i][k];
+    face->n[i] = p->n[i][k];
     ng[i] = p->ng[i][k];
   }
   abbe_wave_ways ways;
-  abbe_media_ways(media, from, to, s->step, s->within, n, d, s->wave, &ways);
+  abbe_media_ways(media, face, s->step, s->within, &ways);
+  *passes = ways.passes;
   abbe_random4(s->id, s->steps, r->pass, r->seed ^ 0x77617665u, random);
   const abbe_wave_way *way = abbe_wave_ways_choose(&ways, p->chance[k], random[0]);
   for (int i = 0; i < 3; i++) d[i] = way->d[i];
@@ -184,8 +185,7 @@ static inline uint8_t abbe_light_path_bend(const abbe_inner_rules *r, const abbe
 
 /* At a coated face: the same of the film; returns what it does not absorb. */
 static inline float abbe_light_path_coat(const abbe_media *media, const abbe_light_path *s,
-                                         int film, int from, int to, bool entering, abbe_scatter *p,
-                                         size_t k) {
+                                         const abbe_wave_face *face, abbe_scatter *p, size_t k) {
   float d[3], n[3], ng[3], out[3], cos_t, passes;
   for (int i = 0; i < 3; i++) {
     d[i] = p->d[i][k];
@@ -193,9 +193,10 @@ static inline float abbe_light_path_coat(const abbe_media *media, const abbe_lig
     ng[i] = p->ng[i][k];
   }
   const float cosine = -(d[0] * n[0] + d[1] * n[1] + d[2] * n[2]), cos_i = fminf(cosine, 1);
-  p->share[k] = abbe_films_reflectance(
-      &media->films, film, entering, abbe_media_n(media, from, s->step, s->within),
-      abbe_media_n(media, to, s->step, s->within), cos_i, s->step, s->within, &passes);
+  p->share[k] = abbe_films_reflectance(&media->films, face->film, face->entering,
+                                       abbe_media_n(media, face->from, s->step, s->within),
+                                       abbe_media_n(media, face->to, s->step, s->within), cos_i,
+                                       s->step, s->within, &passes);
   const bool reflects = p->chance[k] < p->share[k];
   if (reflects == (p->reflects[k] != 0)) return passes;
   abbe_interface_reflectance(cos_i, p->eta[k], &cos_t);

@@ -382,12 +382,12 @@ static void scatter_packet(run *r, const abbe_light_path *paths, size_t count) {
   abbe_scatter_packet(&p->scatter);
   for (size_t k = 0; (m->crystal != NULL || m->films.count > 0) && k < count; k++) {
     const int from = abbe_media_of(p->before[k]), to = abbe_media_of(p->after[k]);
-    if (p->state[k] != SCATTERS) continue;
-    if (p->crystal[k])
-      p->wave[k] = abbe_light_path_bend(&r->rules, m, &paths[k], from, to, &p->scatter, k);
-    if (p->film[k] >= 0)
-      p->passes[k] = abbe_light_path_coat(m, &paths[k], p->film[k], from, to,
-                                          p->after[k] > p->before[k], &p->scatter, k);
+    abbe_wave_face face = {from, to, p->film[k], p->after[k] > p->before[k], .wave = paths[k].wave};
+    if (p->state[k] == SCATTERS && p->crystal[k])
+      p->wave[k] =
+          abbe_light_path_bend(&r->rules, m, &paths[k], &face, &p->scatter, k, &p->passes[k]);
+    else if (p->state[k] == SCATTERS && p->film[k] >= 0)
+      p->passes[k] = abbe_light_path_coat(m, &paths[k], &face, &p->scatter, k);
   }
 }
 

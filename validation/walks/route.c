@@ -79,8 +79,8 @@ static void meet_crystal(walker *w, const abbe_hit *hit, bool entering, const ab
   w->wave = way->wave;
   w->inside = way->reflected ? before : after;
   out->event = way->reflected ? ABBE_ROUTE_REFLECTED : ABBE_ROUTE_TRANSMITTED;
-  out->reflectance = (double)ways->reflected;
-  out->share = (double)way->share;
+  out->reflectance = (double)(ways->reflected * ways->passes);
+  out->share = (double)(way->share * ways->passes);
   out->extraordinary = way->wave == ABBE_UNIAXIAL_EXTRAORDINARY;
 }
 
@@ -96,17 +96,27 @@ static void record(const walker *w, const abbe_hit *hit, abbe_route_event event,
   }
 }
 
-/* The film on the face that is met: what it reflects, and what it passes on. */
-static abbe_result meet_film(const walker *w, const abbe_coating *coating, bool entering,
-                             const double n[2], double cos_i, double shares[2], abbe_error *error) {
-  abbe_film_layer layer[ABBE_FILM_MOST_LAYERS];
+/* The film on the face that is met, with room for its layers; NULL: none. */
+static abbe_result find_film(const walker *w, const abbe_hit *hit, bool covered, bool entering,
+                             abbe_film_layer layer[ABBE_FILM_MOST_LAYERS], abbe_biaxial_film *made,
+                             const abbe_biaxial_film **out, abbe_error *error) {
+  const abbe_coating *coating =
+      abbe_coatings_on(w->g->scene->object[hit->surface->object].coatings, hit->face);
+  *out = NULL;
+  if (covered || coating == NULL) return ABBE_OK;
+  *made = (abbe_biaxial_film){layer, coating->count, !entering, w->lambda_nm};
+  *out = made;
+  return abbe_coating_at(coating, w->lambda_nm, layer, error);
+}
+
+/* What a film on glass reflects and passes on. */
+static void share_film(const abbe_biaxial_film *film, const double n[2], double cos_i,
+                       double shares[2]) {
   abbe_film_light light;
   const double to[2] = {n[1], 0};
-  const abbe_result result = abbe_coating_at(coating, w->lambda_nm, layer, error);
-  if (result != ABBE_OK) return result;
-  abbe_film_light_at(layer, coating->count, !entering, n[0], to, cos_i, w->lambda_nm, &light);
+  abbe_film_light_at(film->layer, film->count, film->reversed, n[0], to, cos_i, film->lambda_nm,
+                     &light);
   abbe_film_unpolarised(&light, &shares[0], &shares[1]);
-  return ABBE_OK;
 }
 
 /* The interface at the hit: turns w->d and w->inside. */
@@ -128,30 +138,27 @@ static abbe_result meet(walker *w, const abbe_hit *hit, const char **choice, abb
   bool biaxial = false;
   if (result == ABBE_OK) result = axes_of(w, before, &axes[0], &biaxial, error);
   if (result == ABBE_OK) result = axes_of(w, after, &axes[1], &biaxial, error);
+  const bool covered = abbe_media_of(before) == abbe_media_of(after);
+  abbe_film_layer layer[ABBE_FILM_MOST_LAYERS];
+  abbe_biaxial_film made;
+  const abbe_biaxial_film *film = NULL;
+  if (result == ABBE_OK) result = find_film(w, hit, covered, entering, layer, &made, &film, error);
   if (result != ABBE_OK) return result;
   out->cos_in = (double)cos_i;
   out->inside_n = n_i;
   if (biaxial || media[0].n_o != media[0].n_e || media[1].n_o != media[1].n_e) {
     abbe_wave_ways ways;
-    if (biaxial)
-      abbe_wave_ways_find_biaxial(&axes[0], &axes[1], n, w->d, w->wave, &ways);
+    if (biaxial || film != NULL)
+      abbe_wave_ways_find_biaxial(&axes[0], &axes[1], n, w->d, w->wave, film, &ways);
     else
       abbe_wave_ways_find(&media[0], &media[1], n, w->d, w->wave, &ways);
     meet_crystal(w, hit, entering, &ways, choice, out);
     return ABBE_OK;
   }
   float eta = (float)(n_i / n_t), d[3];
-  float share = abbe_media_of(before) == abbe_media_of(after)
-                    ? 0
-                    : abbe_interface_reflectance(cos_i, eta, &cos_t);
-  const abbe_coating *coating =
-      abbe_media_of(before) == abbe_media_of(after)
-          ? NULL
-          : abbe_coatings_on(w->g->scene->object[hit->surface->object].coatings, hit->face);
+  float share = covered ? 0 : abbe_interface_reflectance(cos_i, eta, &cos_t);
   double shares[2] = {(double)share, 1 - (double)share};
-  if (coating != NULL)
-    result = meet_film(w, coating, entering, (double[]){n_i, n_t}, (double)cos_i, shares, error);
-  if (result != ABBE_OK) return result;
+  if (film != NULL) share_film(film, (double[]){n_i, n_t}, (double)cos_i, shares);
   bool reflects = share >= 1;
   if (!reflects && **choice != '\0') {
     reflects = **choice == 'r' || **choice == 'R';
@@ -159,7 +166,7 @@ static abbe_result meet(walker *w, const abbe_hit *hit, const char **choice, abb
   }
   if (reflects)
     abbe_interface_reflect(w->d, n, cos_i, d);
-  else if (abbe_media_of(before) == abbe_media_of(after))
+  else if (covered)
     memcpy(d, w->d, sizeof d);
   else
     abbe_interface_refract(w->d, n, eta, cos_i, cos_t, d);

@@ -74,16 +74,16 @@ TEST(a_coated_pane_passes_what_its_films_do) {
 
 /* In even surroundings a stone with clear films is as bright as they are; absorbing ones make it
  * darker. */
-static double furnace(const char *coating) {
+static double furnace(const char *material, const char *coating) {
   char text[2048];
   abbe_scene scene;
   snprintf(
       text, sizeof text,
       "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.3], fov: 6}\nbackground: 1\nlights: [{name: "
       "far, kind: point, position: [3, 3, 3], intensity: 1}]\nobjects:\n" SLAB(
-          "n-bk7, coating: %s") "- {name: floor, shape: rectangle, width: 2, height: 2, "
-                                "reflectance: 0}\n",
-      coating);
+          "%s, coating: %s") "- {name: floor, shape: rectangle, width: 2, height: 2, "
+                             "reflectance: 0}\n",
+      material, coating);
   load_text(text, &scene);
   scene.object_count = 1; /* no floor */
   abbe_tracer *tracer = make_tracer(&scene, &(abbe_trace_desc){.width = 8,
@@ -103,7 +103,28 @@ static double furnace(const char *coating) {
   return mean;
 }
 
-TEST(a_furnace_of_coated_glass_is_even) {
-  assert_near(furnace("{layers: [[1.38, 99.6], [2.35, 60]]}"), 1, 0.004);
-  assert_true(furnace("{layers: [[[0.42, 2.4], 10]]}") < 0.8);
+TEST(a_furnace_of_coated_stones_is_even) {
+  static const char *const stones[] = {"n-bk7", "calcite", "topaz"};
+  for (int i = 0; i < 3; i++) {
+    assert_near(furnace(stones[i], "{layers: [[1.38, 99.6], [2.35, 60]]}"), 1, 0.004);
+    assert_true(furnace(stones[i], "{layers: [[[0.42, 2.4], 10]]}") < 0.8);
+  }
+}
+
+TEST(photons_through_coated_crystals_are_all_accounted_for) {
+  static const char *const stones[] = {"calcite", "topaz"};
+  for (int i = 0; i < 2; i++) {
+    char text[2048];
+    FREED fixture *f = malloc(sizeof *f);
+    snprintf(text, sizeof text, SCENE SLAB("%s, coating: {layers: [[[0.42, 2.4], 10], [2.4, 60]]}"),
+             stones[i]);
+    make(text, NULL, f);
+    const double from[3] = {-0.05, 0.01, 0.5}, d[3] = {0.6, 0, -0.8};
+    shoot(f, from, d, 16);
+    const abbe_light_ledger *l = &f->ledger;
+    assert_near(l->reached, (double)f->photons, 1e-6 * (double)f->photons);
+    assert_near(l->deposited + l->absorbed + l->missed, l->reached, 1e-5 * l->reached);
+    assert_true(l->absorbed > 0.05 * l->reached && l->lost == 0);
+    drop(f);
+  }
 }
