@@ -33,6 +33,7 @@ static abbe_result read_picture(abbe_renderer *r, bool aovs, abbe_image *out, ab
   abbe_rgb_space_chromaticities(space, out->xy);
   result = abbe_image_set_attribute(out, "abbe:space", abbe_rgb_space_name(space), error);
   if (result == ABBE_OK) result = set_observer(r, out, error);
+  if (result == ABBE_OK) result = abbe_scene_mark_exposure(r->scene.local, out, error);
   if (result == ABBE_OK) result = abbe_gl_check(r->gpu.gl, "the reading of the picture", error);
   if (result != ABBE_OK) abbe_image_free(out);
   return result;

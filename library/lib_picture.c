@@ -7,6 +7,7 @@
 #include "library/lib_handles.h"
 #include "library/lib_settings.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -132,9 +133,12 @@ abbe_result abbe_lib_picture_save_png(const abbe_lib_picture *picture, const cha
                                                     -ABBE_DISPLAY_MAX_EXPOSURE,
                                                     ABBE_DISPLAY_MAX_EXPOSURE),
                                     ABBE_LIB_CHOICE("bits", &depth, depths)};
+  desc.display.exposure = NAN;
   abbe_result result = abbe_library_settings_read("save_png", known, sizeof known / sizeof *known,
                                                   settings, count, error);
   if (result != ABBE_OK) return result;
+  desc.stated = !isnan(desc.display.exposure);
+  if (!desc.stated) desc.display.exposure = 0;
   desc.bits = depth == 1 ? 16 : 0;
   return abbe_screen_png_write(path, &picture->image, &desc, error);
 }

@@ -50,8 +50,9 @@ abbe_result abbe_lib_picture_save(const abbe_lib_picture *picture, const char *p
                                   abbe_error *error);
 /* For a screen, through OpenColorIO: .png, .webp, .jpg, .gif or .avif by its ending. Settings:
  * config (a file; else $OCIO, else the one that ships), display, view, layer (its channels LAYER.R
- * …), exposure (stops, -60 to 60), bits (8 or 16). ABBE_COLOUR, ABBE_UNSUPPORTED for what the build
- * has no library for, ABBE_NOT_FOUND without colour, ABBE_IO. */
+ * …), exposure (stops, -60 to 60; else what the scene's camera says), bits (8 or 16). ABBE_COLOUR,
+ * ABBE_UNSUPPORTED for what the build has no library for, ABBE_NOT_FOUND without colour, ABBE_IO.
+ */
 abbe_result abbe_lib_picture_save_png(const abbe_lib_picture *picture, const char *path,
                                       const char *const *settings, size_t count, abbe_error *error);
 

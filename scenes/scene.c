@@ -2,6 +2,7 @@
 
 #include "base/maths.h"
 #include "base/number.h"
+#include "colorimetry/screen/screen_png.h"
 #include "scenes/geometry/transform.h"
 
 #include <math.h>
@@ -35,6 +36,15 @@ void abbe_lights_free(abbe_light *light, size_t count) {
     free(light[i].illuminant_path);
   }
   free(light);
+}
+
+abbe_result abbe_scene_mark_exposure(const abbe_scene *scene, abbe_image *image,
+                                     abbe_error *error) {
+  const abbe_camera *c = &scene->camera;
+  char text[ABBE_NUMBER_TEXT_SIZE] = "auto";
+  if (!c->exposed && c->exposure == 0) return ABBE_OK;
+  if (!c->exposed) abbe_number_format(text, sizeof text, "%.9g", c->exposure);
+  return abbe_image_set_attribute(image, ABBE_SCREEN_EXPOSURE, text, error);
 }
 
 void abbe_scene_free(abbe_scene *scene) {

@@ -37,6 +37,8 @@ typedef struct abbe_camera {
   bool inside;          /* the camera may be inside a refractor, as under water */
   double aperture;      /* m, the diameter of its pupil; 0: a pinhole, all is sharp */
   double focus;         /* m, how far along its view things are sharp; 0 of a pinhole */
+  double exposure;      /* stops that a display adds, -60 to 60 */
+  bool exposed;         /* not these: such as each picture's own light wants */
 } abbe_camera;
 
 typedef enum abbe_light_kind {
@@ -167,6 +169,9 @@ bool abbe_scene_is_hazy(const abbe_scene *scene);
 
 /* The first mirror, or NULL. */
 const abbe_object *abbe_scene_mirror(const abbe_scene *scene);
+
+/* A picture of the scene says its camera's exposure (screen_png.h), where that is not 0. */
+abbe_result abbe_scene_mark_exposure(const abbe_scene *scene, abbe_image *image, abbe_error *error);
 
 void abbe_scene_free(abbe_scene *scene);
 /* A list of lights, and what they own. */

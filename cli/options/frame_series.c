@@ -243,6 +243,10 @@ abbe_result abbe_frame_series_record(abbe_frame_series *s, const abbe_scene *sce
                                      abbe_error *error) {
   /* which frames there are is no matter, unless what moves goes by it; nor is the pace of turning
    */
+  if (scene->camera.exposed && !s->stated)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the scene's 'exposure: auto' is of one picture, and frames would "
+                          "flicker: give the stops that it takes for one, as --exposure STOPS");
   const char *without = s->around ? "fps" : s->moves == 0 ? "frames" : NULL;
   return frame_record_make(scene, without, &s->made, error);
 }

@@ -25,6 +25,7 @@ typedef struct abbe_frame_series {
   bool merge;  /* frames that are there, and draw none */
   bool resume; /* draw those alone that are not there, or that another run has made */
   char *made;  /* what this run's frames have in common */
+  bool stated; /* --exposure's stops are all frames' */
   size_t moves;
   char move_first[ABBE_FRAME_SERIES_MOVES][ABBE_FRAME_SERIES_MOVE_TEXT]; /* "KEY=A" */
   const char *move_last[ABBE_FRAME_SERIES_MOVES];                        /* "B" */
@@ -54,7 +55,8 @@ abbe_result abbe_frame_series_scene(const abbe_frame_series *series, const abbe_
                                     const char *materials, const abbe_scene_input_changes *changes,
                                     size_t i, abbe_scene *out, abbe_error *error);
 
-/* Sets series->made, which abbe_frame_series_free frees. ABBE_NO_MEMORY. */
+/* Sets series->made, which abbe_frame_series_free frees. ABBE_INVALID_ARGUMENT where each frame
+ * would choose its own exposure, ABBE_NO_MEMORY. */
 abbe_result abbe_frame_series_record(abbe_frame_series *series, const abbe_scene *scene,
                                      abbe_error *error);
 void abbe_frame_series_free(abbe_frame_series *series);

@@ -4,6 +4,7 @@
 #include "cli/base/command.h"
 
 #include "colorimetry/colour_temperature.h"
+#include "colorimetry/screen/glare.h"
 #include "colorimetry/screen/screen_file.h"
 
 #include <math.h>
@@ -18,6 +19,7 @@ enum {
   OPTION_EXPOSURE,
   OPTION_GAMUT,
   OPTION_WHITE,
+  OPTION_GLARE,
   OPTION_BITS
 };
 
@@ -31,7 +33,7 @@ static const struct argp_option options[] = {
     {"view", OPTION_VIEW, "NAME", 0, "how to show it; without it, the display's first", 0},
     {"exposure", OPTION_EXPOSURE, "STOPS|auto", 0,
      "brighten (or darken) before the view; auto: so that a tenth of the picture is brighter than "
-     "0.8 (0)",
+     "0.8; without it, as the scene's camera says, else 0",
      0},
     {"gamut", OPTION_GAMUT, "HOW", 0,
      "bring colours that the screen lacks inside, before the view: clip, white (towards it at "
@@ -40,6 +42,10 @@ static const struct argp_option options[] = {
     {"white", OPTION_WHITE, "X,Y|KELVIN", 0,
      "what shall look white, by Bradford: a chromaticity or a temperature (daylight's from 4000 K "
      "on)",
+     0},
+    {"glare", OPTION_GLARE, "DEGREES", 0,
+     "what the eye scatters of bright light, of a picture that is seen so many degrees high, such "
+     "as 20",
      0},
     {"bits", OPTION_BITS, "N", 0,
      "of a PNG 8 or 16 (8, for PQ and HLG 16), of an AVIF 10 or 12 (10), of others 8", 0},
@@ -82,6 +88,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_EXPOSURE:
     o->given = "--exposure";
     o->exposed = strcmp(text, "auto") == 0;
+    o->stated = !o->exposed;
     o->display.exposure =
         o->exposed ? 0
                    : abbe_command_number(o->program, "--exposure", text, -ABBE_DISPLAY_MAX_EXPOSURE,
@@ -94,6 +101,11 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_WHITE:
     o->given = "--white";
     take_white(o, text);
+    return 0;
+  case OPTION_GLARE:
+    o->given = "--glare";
+    o->glare_deg =
+        abbe_command_number(o->program, "--glare", text, ABBE_GLARE_MIN_DEG, ABBE_GLARE_MAX_DEG);
     return 0;
   case OPTION_BITS:
     o->given = "--bits";
@@ -143,6 +155,8 @@ abbe_result abbe_screen_options_write(const abbe_screen_options *o, const char *
   abbe_screen_png_notes notes = {0};
   const abbe_screen_png_desc desc = {.display = o->display,
                                      .exposed = o->exposed,
+                                     .stated = o->stated,
+                                     .glare_deg = o->glare_deg,
                                      .layer = layer,
                                      .name = name,
                                      .bits = o->bits,
@@ -150,8 +164,8 @@ abbe_result abbe_screen_options_write(const abbe_screen_options *o, const char *
                                      .notes = &notes};
   const abbe_result result = abbe_screen_png_write(path, image, &desc, error);
   if (name == NULL) name = "the picture";
-  if (o->exposed && result == ABBE_OK)
-    fprintf(stderr, "note: --exposure auto takes %.2f stops for %s\n", notes.exposure, name);
+  if (notes.chosen && result == ABBE_OK)
+    fprintf(stderr, "note: exposure auto takes %.2f stops for %s\n", notes.exposure, name);
   if (notes.space_assumed) abbe_command_note_space(name);
   if (notes.white > MOST_WHITE) warn_white(&notes, notes.exposure);
   abbe_command_note_odd(name, &notes.odd, "shown as the brightest light there is");

@@ -1,5 +1,5 @@
 /* screen_options.h: how a picture is shown, for every command that writes a PNG: --ocio, --display,
- * --view, --exposure, --gamut, --white and --bits. Internal to cli/.
+ * --view, --exposure, --gamut, --white, --glare and --bits. Internal to cli/.
  */
 #ifndef ABBE_CLI_OPTIONS_SCREEN_OPTIONS_H
 #define ABBE_CLI_OPTIONS_SCREEN_OPTIONS_H
@@ -15,8 +15,9 @@ typedef struct abbe_screen_options {
   const char *program;
   const char *given; /* one of them, as it was given: a picture must be shown */
   abbe_display_desc display;
-  bool exposed; /* --exposure auto */
+  bool exposed, stated; /* --exposure auto, --exposure STOPS */
   int bits;
+  double glare_deg;
   bool alpha; /* the picture has channel A, for the PNG */
 } abbe_screen_options;
 

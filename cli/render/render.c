@@ -139,6 +139,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
                  "%s writes frames by -o FILE.exr and --png FILE.png, and goes "
                  "without --save-map, --frames N, --bands and --error-bars",
                  q->series.around ? "--turntable" : "--frames A:B");
+    q->series.stated = q->screen.stated || q->png == NULL;
     abbe_frame_series_check(&q->series, q->png, state);
     check_ranks(q, state);
     if (q->series.merge && q->png == NULL)

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "cli/view/view_keep.h"
 #include "colorimetry/rgb_space.h"
+#include "colorimetry/screen/screen_png.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -97,6 +98,8 @@ static void take_rendered(abbe_view_session *app, abbe_view_result *result) {
     return;
   }
   replace(&app->pictures.rendered, &result->picture);
+  if (!app->exposed) app->state.exposure = abbe_screen_png_exposure(&app->pictures.rendered);
+  app->exposed = true;
   abbe_image_free(&app->pictures.layers);
   app->pictures.coarse = 0;
   if (result->job.stage == ABBE_VIEW_MOVING) {

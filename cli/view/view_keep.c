@@ -61,6 +61,10 @@ void abbe_view_keep_name(const abbe_view_session *session, const char *ending, c
              ending);
 }
 
+static bool has_exposure(const abbe_view_session *session) {
+  return abbe_image_attribute_text(&session->pictures.rendered, ABBE_SCREEN_EXPOSURE) != NULL;
+}
+
 /* Beside what is kept, and shown alike. */
 static void write_outputs(const abbe_view_session *session, FILE *out) {
   char name[1100], stops[ABBE_NUMBER_TEXT_SIZE + 16];
@@ -82,7 +86,7 @@ static void write_outputs(const abbe_view_session *session, FILE *out) {
     fputs(texts[i].option, out);
     quote(out, texts[i].text);
   }
-  if (session->state.exposure == 0) return;
+  if (session->state.exposure == 0 && !has_exposure(session)) return;
   abbe_number_format(stops, sizeof stops, " --exposure %.9g", session->state.exposure);
   fputs(stops, out);
 }
@@ -155,8 +159,14 @@ static bool names_files(const abbe_view_session *session, const char *target) {
 static abbe_result keep_scene(const abbe_view_session *session, const char *target,
                               abbe_error *error) {
   const abbe_view_document *now = abbe_view_history_now(&session->state.history);
+  const bool exposed = session->state.exposure != 0 || has_exposure(session);
+  const char *set[ABBE_VIEW_MOST_CHANGES + 1];
+  char stops[ABBE_NUMBER_TEXT_SIZE + 20];
+  memcpy(set, now->set, now->set_count * sizeof *set);
+  abbe_number_format(stops, sizeof stops, "camera.exposure=%.9g", session->state.exposure);
+  set[now->set_count] = stops;
   const abbe_scene_options options = {
-      .set = (const char *const *)now->set, .set_count = now->set_count, .studio = now->studio};
+      .set = set, .set_count = now->set_count + exposed, .studio = now->studio};
   char *text = NULL;
   size_t size = 0;
   abbe_result result = abbe_scene_text(now->path, &options, &text, &size, error);
@@ -194,6 +204,7 @@ abbe_result abbe_view_keep_png(const abbe_view_session *session, const abbe_imag
   abbe_screen_png_desc desc = {.display =
                                    abbe_view_session_display(session, session->view, &names)};
   desc.display.exposure = session->state.exposure;
+  desc.stated = true;
   const abbe_result result = abbe_view_keep_check(session, path, error);
   return result == ABBE_OK ? abbe_screen_png_write(path, image, &desc, error) : result;
 }

@@ -82,6 +82,7 @@ typedef struct abbe_view_session {
   double stop_ms;        /* what was made for the one before took to stop; the last times */
   size_t turn_frame;     /* frame of the turntable, from 1; 0: it stands */
   uint64_t turn_serial;  /* what it turns */
+  bool exposed;          /* the scene's own exposure was taken over */
   bool turned;           /* the last one is whole */
   char note[1200];       /* what was saved, or why not */
   abbe_view_files files; /* files of the scene */

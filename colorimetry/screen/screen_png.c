@@ -1,7 +1,9 @@
 #include "colorimetry/screen/screen_png.h"
 
+#include "base/number.h"
 #include "colorimetry/image/picture_space.h"
 #include "colorimetry/image/png_file.h"
+#include "colorimetry/screen/glare.h"
 #include "colorimetry/screen/screen_file.h"
 
 #include <math.h>
@@ -135,6 +137,34 @@ static double find_stops(const float *alpha, size_t stride, const abbe_image *pi
   return value > 0 ? log2(bright / value) : 0;
 }
 
+static double clamp_stops(double stops) {
+  return fmax(-ABBE_DISPLAY_MAX_EXPOSURE, fmin(stops, ABBE_DISPLAY_MAX_EXPOSURE));
+}
+
+/* Whether the attribute says stops; a file may have whatever text. */
+static bool read_stops(const char *text, double *stops) {
+  const char *end = NULL;
+  return text != NULL && abbe_number_read(text, &end, stops) && *end == '\0' && isfinite(*stops);
+}
+
+static bool is_auto(const char *text) {
+  return text != NULL && strcmp(text, "auto") == 0;
+}
+
+double abbe_screen_png_exposure(const abbe_image *image) {
+  const char *text = abbe_image_attribute_text(image, ABBE_SCREEN_EXPOSURE);
+  const abbe_screen_png_desc desc = {0};
+  abbe_image picked = {0};
+  double stops = 0;
+  int triple;
+  if (is_auto(text) && pick_channels(&desc, image, &picked, &triple, NULL) == ABBE_OK)
+    stops = find_stops(NULL, 0, &picked);
+  else if (!read_stops(text, &stops))
+    stops = 0;
+  abbe_image_free(&picked);
+  return clamp_stops(stops);
+}
+
 /* A pixel is white where 8 bits have all three channels at their end. */
 static double share_of_white(const abbe_image *shown) {
   const float end = 254.5f / 255;
@@ -160,9 +190,14 @@ abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,
   }
   const float *alpha = alpha_of(d, image);
   if (result == ABBE_OK && alpha != NULL) divide(alpha, image->channels, &picked);
+  if (result == ABBE_OK && d->glare_deg > 0) result = abbe_glare_add(&picked, d->glare_deg, error);
   const double stops = result == ABBE_OK ? find_stops(alpha, image->channels, &picked) : 0;
-  if (d->exposed)
-    desc.exposure = fmax(-ABBE_DISPLAY_MAX_EXPOSURE, fmin(stops, ABBE_DISPLAY_MAX_EXPOSURE));
+  const char *own =
+      d->exposed || d->stated ? NULL : abbe_image_attribute_text(image, ABBE_SCREEN_EXPOSURE);
+  const bool chosen = d->exposed || is_auto(own);
+  double wanted = 0;
+  if (chosen || read_stops(own, &wanted)) desc.exposure = clamp_stops(chosen ? stops : wanted);
+  if (result == ABBE_OK && d->notes != NULL) d->notes->chosen = chosen;
   if (result == ABBE_OK && d->notes != NULL) d->notes->stops = stops;
   if (result == ABBE_OK && d->notes != NULL) d->notes->exposure = desc.exposure;
   if (result == ABBE_OK) result = find_source(d, image, triple, &picked, &desc.source_space, error);

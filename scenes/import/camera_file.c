@@ -90,6 +90,19 @@ static abbe_result read_aperture(abbe_yaml *yaml, abbe_yaml_node node, double *n
                               "one all is sharp");
 }
 
+/* What pictures say of it: ABBE_SCREEN_EXPOSURE. */
+static abbe_result read_exposure(abbe_yaml *yaml, abbe_yaml_node node, abbe_camera *out,
+                                 abbe_error *error) {
+  const abbe_yaml_node at = abbe_yaml_get(yaml, node, "exposure");
+  const char *text = abbe_yaml_text(yaml, at);
+  out->exposed = text != NULL && strcmp(text, "auto") == 0;
+  if (out->exposed) return ABBE_OK;
+  if (text != NULL && strspn(text, "+-.0123456789") == 0)
+    return abbe_yaml_fail(yaml, at, error, "'exposure' is 'auto' or stops such as 1.5, not '%.60s'",
+                          text);
+  return abbe_yaml_get_number(yaml, node, "exposure", -60, 60, &out->exposure, error);
+}
+
 abbe_result abbe_camera_read(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera *out,
                              abbe_error *error) {
   abbe_yaml_node node;
@@ -114,6 +127,7 @@ abbe_result abbe_camera_read(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera *
   if (result == ABBE_OK) result = read_frame(yaml, node, error);
   if (result == ABBE_OK) result = read_lens(yaml, node, &number, error);
   if (result == ABBE_OK) result = read_aperture(yaml, node, &number, error);
+  if (result == ABBE_OK) result = read_exposure(yaml, node, out, error);
   return result == ABBE_OK ? abbe_yaml_check_keys(yaml, node, "the camera", error) : result;
 }
 

@@ -82,6 +82,7 @@ static abbe_result attributes(const abbe_tracer *t, const char *kind, abbe_image
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof pair / sizeof *pair && result == ABBE_OK; i++)
     result = abbe_image_set_attribute(out, pair[i][0], pair[i][1], error);
+  if (result == ABBE_OK) result = abbe_scene_mark_exposure(t->scene, out, error);
   if (result == ABBE_OK && t->bands.count > 0) {
     result = abbe_image_set_attribute(out, "spectralLayoutVersion", "1.0", error);
     if (result == ABBE_OK)

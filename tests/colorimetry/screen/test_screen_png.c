@@ -128,6 +128,21 @@ TEST(stops_are_those_of_finite_light) {
   assert_near(notes.exposure, 0, 0);
   OK(abbe_screen_png_write(path, &image, &exposed, &error));
   assert_near(notes.exposure, -2, 1e-6);
+  /* what the picture says, unless the request does */
+  static const struct {
+    const char *said;
+    bool stated;
+    double stops;
+  } of[] = {{"auto", false, -2}, {"1.5", false, 1.5}, {"1e9", false, 60}, {"1.5", true, 0},
+            {"auto", true, 0},   {"dark", false, 0},  {"nan", false, 0},  {"", false, 0}};
+  for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
+    abbe_screen_png_desc own = desc;
+    own.stated = of[i].stated;
+    OK(abbe_image_set_attribute(&image, ABBE_SCREEN_EXPOSURE, of[i].said, &error));
+    OK(abbe_screen_png_write(path, &image, &own, &error));
+    assert_near(notes.exposure, of[i].stops, 1e-6);
+    if (!of[i].stated) assert_near(abbe_screen_png_exposure(&image), of[i].stops, 1e-6);
+  }
   for (size_t i = 0; i < 12; i++) image.data[i] = INFINITY;
   OK(abbe_screen_png_write(path, &image, &desc, &error));
   assert_true(notes.stops == 0 && notes.white == 1);

@@ -83,6 +83,8 @@ TEST(what_cannot_be_framed_is_named) {
       {"{frame: [ball], elevation: 90}", "not in the range from -89.9"},
 #define STANDS "eye: [0.2, -1, 0.03], target: [0.2, 0, 0.03]"
       {"{" STANDS ", focus: ball}", "'focus' goes with an 'aperture'"},
+      {"{" STANDS ", exposure: bright}", "'auto' or stops such as 1.5"},
+      {"{" STANDS ", exposure: 61}", "61"},
       {"{" STANDS ", aperture: 8, focus: bal}", "did you mean 'ball'"},
       {"{" STANDS ", fov: 30, lens: macro-100mm}", "leave out the 'fov'"},
       {"{" STANDS ", aperture: 0}", "range from 0.5"},
@@ -152,4 +154,27 @@ TEST(what_is_sharp_is_chosen) {
   make("{" STANDS "}", &scene);
   assert_true(scene.camera.aperture == 0 && scene.camera.focus == 0);
   abbe_scene_free(&scene);
+}
+
+TEST(pictures_say_their_exposure) {
+  static const struct {
+    const char *camera, *text;
+  } of[] = {{"{" STANDS "}", NULL},
+            {"{" STANDS ", exposure: auto}", "auto"},
+            {"{" STANDS ", exposure: -1.25}", "-1.25"},
+            {"{" STANDS ", exposure: 0}", NULL}};
+  static const char *const names[] = {"R"};
+  for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
+    OWNED(abbe_image, image);
+    abbe_scene scene;
+    make(of[i].camera, &scene);
+    OK(abbe_image_make(1, 1, 1, names, &image, &error));
+    OK(abbe_scene_mark_exposure(&scene, &image, &error));
+    const char *text = abbe_image_attribute_text(&image, "abbe:exposure");
+    if (of[i].text == NULL)
+      assert_null(text);
+    else
+      assert_string_equal(text, of[i].text);
+    abbe_scene_free(&scene);
+  }
 }
