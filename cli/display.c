@@ -4,7 +4,7 @@
 #include "cli/options/spectral_options.h"
 
 #include "base/number.h"
-#include "colorimetry/display/lut.h"
+#include "colorimetry/screen/lut.h"
 #include "colorimetry/image/image.h"
 #include "colorimetry/plot/false_colours.h"
 #include "colorimetry/spectral_picture/relight.h"

@@ -23,7 +23,7 @@ static const struct {
 
 /* C++ stays in the bridges. */
 static const char *const bridges[] = {"cli/view/widgets/view_ui.cpp",
-                                      "colorimetry/display/lut_ocio.cpp",
+                                      "colorimetry/screen/lut_ocio.cpp",
                                       "colorimetry/image/display_ocio.cpp",
                                       "scenes/geometry/transform.cpp",
                                       "tests/colorimetry/image/exr_library.cpp",

@@ -6,8 +6,8 @@
  * (log2(h + a) - log2 a), where a and h are the lowest and the highest stop, so that 0 is 0. Light
  * outside 0 to h is clipped.
  */
-#ifndef ABBE_COLORIMETRY_DISPLAY_LUT_H
-#define ABBE_COLORIMETRY_DISPLAY_LUT_H
+#ifndef ABBE_COLORIMETRY_SCREEN_LUT_H
+#define ABBE_COLORIMETRY_SCREEN_LUT_H
 
 #include "base/error.h"
 #include "colorimetry/image/display_ocio.h"

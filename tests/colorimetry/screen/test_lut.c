@@ -1,5 +1,5 @@
 /* Tables of a view against the view, as OpenColorIO reads them. */
-#include "colorimetry/display/lut.h"
+#include "colorimetry/screen/lut.h"
 
 #include "base/file.h"
 

@@ -1,4 +1,4 @@
-#include "colorimetry/display/lut.h"
+#include "colorimetry/screen/lut.h"
 
 #include "base/file.h"
 
