@@ -84,7 +84,7 @@ void abbe_mesh_report_faults(const abbe_mesh_report *report, char *text, size_t 
  * degenerate faces and faces that are there twice, makes orientation
  * consistent, turns an inside-out mesh, closes flat or small holes. repair: closes holes of any
  * shape by the smallest surface, and drops what parts a body from itself: walls of faces back to
- * back (or one of them, where nothing is around), sheets that hang on it or stand in it. *what (may
+ * back (or one of them, where nothing is around). *what (may
  * be NULL) gets a malloc'd sentence that says what was done, and where the surface still crosses
  * itself, or NULL where there is nothing to say. A fixed mesh has no uv; given normals stay where
  * faces do. Leaves the mesh closed and outwards or fails with ABBE_GEOMETRY, the mesh unchanged,

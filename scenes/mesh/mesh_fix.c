@@ -12,8 +12,7 @@
 #include <string.h>
 
 typedef struct fixing {
-  size_t joined, repeated, doubles, walls, sheets, slivers, turned, holes, inverted, crossings,
-      solids;
+  size_t joined, repeated, doubles, walls, slivers, turned, holes, inverted, crossings, solids;
   double volume;      /* that is enclosed */
   double widest;      /* hole, in the mesh's own unit */
   double apart;       /* a joined corner, at the most, from the middle, likewise */
@@ -192,7 +191,6 @@ static abbe_result run_steps(abbe_mesh *mesh, bool repair, fixing *done, abbe_er
   if (result == ABBE_OK && mesh->face_count == 0)
     return abbe_error_set(error, ABBE_GEOMETRY,
                           "the mesh is nothing but pairs of faces back to back, with no volume");
-  if (result == ABBE_OK && repair) result = abbe_mesh_drop_sheets(mesh, &done->sheets, error);
   if (result == ABBE_OK) result = make_consistent(mesh, done, error);
   if (result == ABBE_OK) result = flip_slivers(mesh, done, error);
   if (result == ABBE_OK)
@@ -205,11 +203,13 @@ static abbe_result run_steps(abbe_mesh *mesh, bool repair, fixing *done, abbe_er
 static abbe_result refuse(const abbe_mesh_report *r, bool repair, abbe_error *error) {
   char faults[640];
   abbe_mesh_report_faults(r, faults, sizeof faults);
-  const bool helps = !repair && (r->open_edges || r->crowded_edges);
-  return abbe_error_set(error, ABBE_GEOMETRY,
-                        "the mesh is not a closed, consistently oriented surface%s: %s%s",
-                        repair ? ", and could not be made one" : "", faults,
-                        helps ? "; 'repair: true' closes holes and drops sheets within" : "");
+  return abbe_error_set(
+      error, ABBE_GEOMETRY, "the mesh is not a closed, consistently oriented surface%s: %s%s%s",
+      repair ? ", and could not be made one" : "", faults,
+      !repair && (r->open_edges || r->crowded_edges)
+          ? "; 'repair: true' closes holes and drops walls within"
+          : "",
+      r->crowded_edges ? "; sheets that hang on a body are taken off where the mesh was made" : "");
 }
 
 /* After the steps, or at once where none is needed. */
@@ -260,8 +260,6 @@ static abbe_result describe(const fixing *done, bool repair, char **what, abbe_e
   if (repair)
     say(text, sizeof text, done->walls, "pair of faces back to back dropped or made one",
         "pairs of faces back to back dropped or made one");
-  say(text, sizeof text, done->sheets, "sheet that hung on the body or stood in it dropped",
-      "sheets that hung on the body or stood in it dropped");
   say(text, sizeof text, done->slivers, "face without area split away",
       "faces without area split away");
   say(text, sizeof text, done->turned, "face turned to agree with its neighbours",
@@ -396,8 +394,8 @@ abbe_result abbe_mesh_fix(abbe_mesh *mesh, abbe_mesh_normals normals, bool repai
   } else if (result == ABBE_OK) {
     result = fix(&t, repair, &done, &work, error);
   }
-  const bool changed = done.joined + done.repeated + done.doubles + done.walls + done.sheets +
-                           done.slivers + done.turned + done.holes + done.inverted >
+  const bool changed = done.joined + done.repeated + done.doubles + done.walls + done.slivers +
+                           done.turned + done.holes + done.inverted >
                        0;
   if (result == ABBE_OK && changed && normals != ABBE_NORMALS_AUTO)
     result = abbe_mesh_drop_unused(&work, error);

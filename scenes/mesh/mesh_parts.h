@@ -49,10 +49,6 @@ abbe_result abbe_mesh_join_corners(const abbe_mesh *mesh, const abbe_topology *t
 abbe_result abbe_mesh_drop_doubles(abbe_mesh *mesh, bool walls_go, size_t *doubles, size_t *walls,
                                    abbe_error *error);
 
-/* Drops sheets of faces that hang on the mesh or stand in it, where it is then nearer to being
- * closed, and counts them. */
-abbe_result abbe_mesh_drop_sheets(abbe_mesh *mesh, size_t *sheets, abbe_error *error);
-
 /* Closes holes: by a fan where that is safe, else, if any, by the smallest surface. *widest: the
  * longest side of the widest one's bounds, in the mesh's own unit. */
 abbe_result abbe_mesh_close_holes(abbe_mesh *mesh, bool any, size_t *closed, double *widest,

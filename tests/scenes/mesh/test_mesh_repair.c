@@ -14,17 +14,6 @@ static void assert_repairs(abbe_mesh *m, const char *word) {
   assert_true(is_closed(m));
 }
 
-/* A box and room for more points and faces, none of which is there yet. */
-static abbe_mesh box_and_more(size_t points, size_t faces) {
-  const test_box one = {{0, 0, 0}, {1, 1, 1}, false};
-  abbe_mesh m, box = test_boxes(&one, 1);
-  OK(abbe_mesh_make(8 + points, 12 + faces, false, &m, &error));
-  memcpy(m.position, box.position, 8 * sizeof *m.position);
-  memcpy(m.face, box.face, 12 * sizeof *m.face);
-  abbe_mesh_free(&box);
-  return m;
-}
-
 static void set_point(abbe_mesh *m, size_t v, double x, double y, double z) {
   const double p[3] = {x, y, z};
   memcpy(m->position[v], p, sizeof p);
@@ -33,49 +22,6 @@ static void set_point(abbe_mesh *m, size_t v, double x, double y, double z) {
 static void set_face(abbe_mesh *m, size_t f, size_t a, size_t b, size_t c) {
   const uint32_t face[3] = {(uint32_t)a, (uint32_t)b, (uint32_t)c};
   memcpy(m->face[f], face, sizeof face);
-}
-
-/* Two fins on every one of many bodies. */
-TEST(as_many_sheets_as_there_are_go) {
-  enum { BODIES = 200 };
-  static test_box box[BODIES + (2 * BODIES + 11) / 12]; /* whose last ones are made into fins */
-  const size_t boxes = sizeof box / sizeof *box;
-  for (size_t i = 0; i < boxes; i++)
-    box[i] = (test_box){{3.0 * (double)i, 0, 0}, {3.0 * (double)i + 1, 1, 1}, false};
-  abbe_mesh m = test_boxes(box, boxes);
-  m.face_count = 12 * BODIES;
-  for (size_t i = 0; i < BODIES; i++) {
-    set_face(&m, m.face_count++, 8 * i + 4, 8 * i + 5, 8 * i + 12);
-    set_face(&m, m.face_count++, 8 * i + 2, 8 * i + 3, 8 * i + 13);
-  }
-  assert_repairs(&m, "400 sheets that hung on the body");
-  assert_int_equal(m.face_count, 12 * BODIES);
-  abbe_mesh_free(&m);
-}
-
-/* Fins of two triangles, each a little smaller than the one on whose diagonal it hangs: they can
- * only go one after another. */
-TEST(sheets_on_sheets_go) {
-  enum { FINS = 40 };
-  abbe_mesh m = box_and_more(2 * FINS, 2 * FINS);
-  size_t p = 4, q = 5;
-  for (size_t i = 0; i < FINS; i++) {
-    const size_t r = 8 + 2 * i, s = r + 1;
-    const double size = pow(0.95, (double)i), turn = 2.4 * (double)i;
-    double across[3];
-    for (int k = 0; k < 3; k++) across[k] = m.position[q][k] - m.position[p][k];
-    set_point(&m, r, m.position[p][0] + size * 0.3, m.position[p][1] + 0.3 * size * cos(turn),
-              m.position[p][2] + 0.3 * size * sin(turn));
-    set_point(&m, s, m.position[r][0] + 0.9 * across[0], m.position[r][1] + 0.9 * across[1],
-              m.position[r][2] + 0.9 * across[2]);
-    set_face(&m, 12 + 2 * i, p, q, r);
-    set_face(&m, 13 + 2 * i, q, s, r);
-    p = q;
-    q = r;
-  }
-  assert_repairs(&m, "sheets that hung on the body");
-  assert_int_equal(m.face_count, 12);
-  abbe_mesh_free(&m);
 }
 
 /* Strips that bend three quarters round, each with a rim of so many points. */
