@@ -1,4 +1,4 @@
-#include "base/html_text.h"
+#include "base/encoding.h"
 
 #include <ctype.h>
 #include <stdbool.h>

@@ -3,7 +3,6 @@
 #include "cli/base/progress.h"
 
 #include "validation/known/known_answers.h"
-#include "validation/known/known_chart.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>

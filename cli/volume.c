@@ -2,11 +2,11 @@
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
 #include "cli/options/scene_input.h"
-#include "cli/options/work_options.h"
+#include "cli/options/spectral_options.h"
 
 #include "base/maths.h"
 #include "base/nearest.h"
-#include "scenes/volume/volume_file.h"
+#include "scenes/volume/caustic_volume.h"
 #include "validation/volume/volume_fill.h"
 
 #include <argp.h>

@@ -3,7 +3,7 @@
 #include "library/lib_handles.h"
 #include "library/lib_settings.h"
 #include "validation/compare/compare.h"
-#include "validation/compare/difference_picture.h"
+#include "validation/compare/file_comparison.h"
 
 #include <math.h>
 #include <stdlib.h>

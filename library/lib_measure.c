@@ -6,11 +6,10 @@
 #include "gl/accuracy/preset.h"
 #include "gl/plan/facts/render_settings.h"
 #include "library/choice/finer_scene.h"
-#include "library/choice/scene_hash.h"
 #include "library/choice/trace_times.h"
 #include "library/lib_handles.h"
 #include "library/lib_settings.h"
-#include "scenes/view/map_resample.h"
+#include "scenes/view/map_layout.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -57,7 +57,7 @@ typedef struct abbe_light {
                           rectangle: unit, the normal of the side that shines */
   double radius;       /* disk, m; rectangle: of the circle around it */
   double edge[2][3];   /* rectangle: half of its width and of its height, m */
-  size_t points;       /* disk, rectangle: of so many that stand for it (area_lights.h), with power
+  size_t points;       /* disk, rectangle: of so many that stand for it (environment_lights.h), with power
                           in W/sr; 0 where it is whole, as in a scene as it is loaded */
   double centre[3];    /* centre of the light that the points stand for */
   double cone_rad;     /* spot: half angle beyond which there is no light */

@@ -10,7 +10,6 @@
 #include "scenes/cuts/cut_stretch.h"
 #include "validation/gem/gem_grid_file.h"
 #include "validation/gem/gem_optimum.h"
-#include "validation/ranks/rank_files.h"
 #include "validation/ranks/ranked_optimum.h"
 
 #include <argp.h>

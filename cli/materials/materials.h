@@ -1,7 +1,7 @@
 /* materials.h: the verbs of `abbe materials`, a file each.
  *
  * A verb is one line of ABBE_MATERIALS_VERBS and one function in cli/materials/materials_NAME.c
- * (rename stands beside remove). The program finds it by its name, lists it with its summary in
+ * The program finds it by its name, lists it with its summary in
  * `abbe materials --help`, and hands it its arguments with argv[0] "abbe materials NAME". No verb
  * holds logic that a library could use. Internal to cli/materials/.
  */
@@ -33,7 +33,6 @@
   X(set, "change values of a record, and nothing else in the file")                                \
   X(add, "add a record to a table, new or from another table")                                     \
   X(remove, "take records out of a table")                                                         \
-  X(rename, "give a record another name")                                                          \
   X(import, "make a table of catalogues, refractiveindex.info files and points")                   \
   X(export, "write materials as AGF, RII, CSV or YAML")
 

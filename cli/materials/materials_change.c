@@ -51,7 +51,7 @@ abbe_result abbe_change_assign(abbe_table_edit *edit, const char *name, const ch
   abbe_result result;
   if (strcmp(key, "name") == 0)
     result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                            "a name is changed by 'abbe materials rename %.80s NEW'", name);
+                            "a name is changed by 'abbe materials set %.80s name=NEW'", name);
   else if (equals[1] == '\0')
     result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "'%.80s' has no value; to take the key out, say --unset %.80s",

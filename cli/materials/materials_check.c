@@ -1,7 +1,7 @@
 #include "cli/materials/materials.h"
 
 #include "spectral/editing/check.h"
-#include "spectral/editing/table_fix.h"
+#include "spectral/editing/table_edit.h"
 #include "spectral/formats/material_table_load.h"
 
 #include <argp.h>

@@ -1,4 +1,4 @@
-#include "cli/options/work_options.h"
+#include "cli/options/spectral_options.h"
 
 #include "cli/base/command.h"
 

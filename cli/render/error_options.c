@@ -1,9 +1,9 @@
-#include "cli/render/error_options.h"
+#include "cli/render/render_options.h"
 
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
-#include "gl/accuracy/error_picture.h"
+#include "gl/accuracy/error_bars.h"
 
 #include <cjson/cJSON.h>
 #include <stdio.h>

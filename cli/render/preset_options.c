@@ -1,4 +1,4 @@
-#include "cli/render/preset_options.h"
+#include "cli/render/render_options.h"
 
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"

@@ -5,10 +5,7 @@
 #include "cli/options/own_context.h"
 #include "cli/options/scene_input.h"
 #include "cli/options/screen_options.h"
-#include "cli/render/render_check.h"
-#include "cli/render/render_frames.h"
 #include "cli/render/render_request.h"
-#include "cli/render/traced_picture.h"
 
 #include "colorimetry/image/exr.h"
 #include "gl/accuracy/frame_times.h"

@@ -1,4 +1,4 @@
-#include "cli/render/render_check.h"
+#include "cli/render/render_request.h"
 
 typedef abbe_render_request request;
 

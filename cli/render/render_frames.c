@@ -1,4 +1,4 @@
-#include "cli/render/render_frames.h"
+#include "cli/render/render_request.h"
 
 #include "base/maths.h"
 #include "cli/base/arguments.h"

@@ -5,7 +5,7 @@
 #include "cli/options/spectral_options.h"
 #include "gl/plan/facts/render_settings.h"
 
-#include "scenes/volume/volume_file.h"
+#include "scenes/volume/caustic_volume.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "cli/render/traced_picture.h"
+#include "cli/render/render_request.h"
 
 #include "base/clock.h"
 #include "cli/base/progress.h"

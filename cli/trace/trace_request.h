@@ -6,7 +6,7 @@
 #include "cli/options/map_options.h"
 #include "cli/options/scene_input.h"
 #include "cli/options/screen_options.h"
-#include "cli/options/work_options.h"
+#include "cli/options/spectral_options.h"
 #include "validation/tracer/ranked_run.h"
 #include "validation/tracer/trace_run.h"
 #include "validation/tracer/tracer.h"

@@ -5,11 +5,9 @@
 
 #ifdef ABBE_HAVE_VIEW
 #include "base/file.h"
-#include "cli/view/view_hidden.h"
+#include "cli/view/view_app.h"
 #include "cli/view/view_keep.h"
-#include "cli/view/view_serve.h"
-#include "cli/view/view_window.h"
-#include "scenes/volume/volume_file.h"
+#include "scenes/volume/caustic_volume.h"
 #endif
 
 #include <argp.h>

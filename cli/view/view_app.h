@@ -1,7 +1,7 @@
 /* view_app.h: the viewer as a whole, frame by frame: events in, jobs given and taken, a window's
  * picture drawn into the current context's framebuffer.
  *
- * It owns no window: cli/view/view_window.h and cli/view/view_hidden.h lend it a context and
+ * It owns no window: view_window.c and view_hidden.c lend it a context and
  * events. Internal to cli/view/.
  */
 #ifndef ABBE_CLI_VIEW_VIEW_APP_H
@@ -76,5 +76,70 @@ abbe_result abbe_view_turn_begin(abbe_view_session *session, abbe_error *error);
 bool abbe_view_turn_wants(const abbe_view_session *session, abbe_view_request *out);
 /* Keeps a frame that was requested. */
 void abbe_view_turn_take(abbe_view_session *session, const abbe_view_result *result);
+
+/* The viewer in a window, by GLFW. */
+
+/* Until the window is closed. ABBE_GL where there is no display, or one without OpenGL 4.5; errors
+ * of abbe_view_app_begin. */
+abbe_result abbe_view_window_run(const abbe_view_app_desc *desc, size_t width, size_t height,
+                                 abbe_error *error);
+
+/* The viewer as a page for a browser, for those who work on a server: the window that nobody sees,
+ * over HTTP on the loopback, for who has the token. */
+
+/* Prints the address with its token on standard output and serves until SIGINT, SIGTERM or SIGHUP
+ * come. port 0: any free one. ABBE_UNSUPPORTED in a build without libmicrohttpd, ABBE_IO where the
+ * port is taken; errors of abbe_view_hidden_begin.
+ *
+ *   GET  /?token=T                    the page
+ *   GET  /picture?token=T&after=N     the window as PNG, its number in X-Abbe-Frame; 204 where none
+ *                                     later than N has come within a second
+ *   POST /events?token=T              lines, at most 64 KiB: move X Y; down B [shift] [control]; up
+ *                                     B; wheel CLICKS; key NAME down|up [shift] [control]; size W H
+ *
+ * Moves that follow each other are one, and sizes; turns of the wheel are added up. Signals are
+ * obeyed within a second whatever waits. 403 without the token, with a Host that is not this
+ * machine's or an Origin that is not this page's; the connection ends then. 404 and 405 elsewhere,
+ * 400 with the line that is wrong, 413, and 503 while too many events wait. */
+abbe_result abbe_view_serve_run(unsigned port, const abbe_view_app_desc *desc, size_t width,
+                                size_t height, abbe_error *error);
+
+/* The viewer in a window that nobody sees: EGL without a surface, and a picture of it that can be
+ * read. Scripts lead it, and the page that is served. */
+
+typedef struct abbe_view_hidden {
+  abbe_view_session session;
+  abbe_ui_input input; /* input of the next frame; wheel and text are used up by it */
+  size_t width, height;
+  abbe_context *context;
+  const abbe_gl *gl;
+  GLuint framebuffer, colour;
+  double last_s;
+} abbe_view_hidden;
+
+/* There is one at a time. The pointer is outside at first. Errors of abbe_context_make and
+ * abbe_view_app_begin; there is then nothing to end. */
+abbe_result abbe_view_hidden_begin(abbe_view_hidden *hidden, const abbe_view_app_desc *desc,
+                                   size_t width, size_t height, abbe_error *error);
+void abbe_view_hidden_end(abbe_view_hidden *hidden);
+
+/* Another size from the next frame on, pixels. */
+void abbe_view_hidden_resize(abbe_view_hidden *hidden, size_t width, size_t height);
+/* One frame. */
+void abbe_view_hidden_frame(abbe_view_hidden *hidden);
+/* As a window does between frames: until a worker has made something, or something changes by
+ * itself, at most for so long, s. Only where the description says nobody else to be woken. */
+void abbe_view_hidden_sleep(abbe_view_hidden *hidden, double most_s);
+/* What it looks like: R, G, B a byte each, rows downward, malloc'd; NULL without memory. */
+unsigned char *abbe_view_hidden_read(abbe_view_hidden *hidden);
+
+/* The viewer led by a script, without a display: events, waiting, pictures of the whole window,
+ * and assertions. docs/view.md has the commands. */
+
+/* Runs the script in a window of that size that nobody sees. Errors name file, line and command:
+ * ABBE_PARSE for what is no command, ABBE_TOLERANCE for what was asserted and is not so; and those
+ * of abbe_context_make, abbe_view_app_begin. */
+abbe_result abbe_view_script_run(const char *path, const abbe_view_app_desc *desc, size_t width,
+                                 size_t height, abbe_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "cli/view/view_hidden.h"
+#include "cli/view/view_app.h"
 
 #include "base/clock.h"
 #include "base/file.h"

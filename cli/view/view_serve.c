@@ -1,11 +1,10 @@
-#include "cli/view/view_serve.h"
+#include "cli/view/view_app.h"
 
 #ifdef ABBE_HAVE_SERVE
 
 #include "base/clock.h"
 #include "cli/view/state/view_events.h"
 #include "cli/view/state/view_guard.h"
-#include "cli/view/view_hidden.h"
 
 #include <arpa/inet.h>
 #include <ctype.h>

@@ -6,11 +6,9 @@
 #define ABBE_CLI_VIEW_VIEW_SESSION_H
 
 #include "cli/view/picture/view_painter.h"
-#include "cli/view/picture/view_probe.h"
-#include "cli/view/picture/view_screen.h"
-#include "cli/view/picture/view_table.h"
+#include "cli/view/picture/view_show.h"
 #include "cli/view/widgets/view_ui.h"
-#include "cli/view/work/view_files.h"
+#include "cli/view/work/view_scene.h"
 #include "cli/view/work/view_worker.h"
 
 #define ABBE_VIEW_PANEL_WIDTH 340

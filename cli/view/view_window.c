@@ -1,4 +1,4 @@
-#include "cli/view/view_window.h"
+#include "cli/view/view_app.h"
 
 #include "base/clock.h"
 

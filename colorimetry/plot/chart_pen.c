@@ -1,4 +1,4 @@
-#include "colorimetry/plot/chart_pen.h"
+#include "colorimetry/plot/chart_panel.h"
 
 #include "base/maths.h"
 #include "base/utf8.h"

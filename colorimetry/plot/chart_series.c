@@ -1,7 +1,6 @@
 #include "colorimetry/plot/chart_panel.h"
 
 #include "base/maths.h"
-#include "colorimetry/plot/chart_pen.h"
 
 #include <cairo.h>
 #include <math.h>

@@ -2,7 +2,6 @@
 
 #include "base/file.h"
 #include "colorimetry/plot/chart_panel.h"
-#include "colorimetry/plot/chart_pen.h"
 
 #include <assert.h>
 #include <cairo-pdf.h>

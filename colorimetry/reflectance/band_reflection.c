@@ -1,4 +1,4 @@
-#include "colorimetry/reflectance/band_reflection.h"
+#include "colorimetry/reflectance/reflected_light.h"
 
 #include "colorimetry/rgb_space.h"
 

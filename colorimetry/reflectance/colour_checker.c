@@ -1,4 +1,4 @@
-#include "colorimetry/reflectance/colour_checker.h"
+#include "colorimetry/reflectance/reflected_light.h"
 
 #include "base/nearest.h"
 

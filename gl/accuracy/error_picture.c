@@ -1,4 +1,4 @@
-#include "gl/accuracy/error_picture.h"
+#include "gl/accuracy/error_bars.h"
 
 #include "colorimetry/image/picture_space.h"
 #include "colorimetry/plot/false_colours.h"

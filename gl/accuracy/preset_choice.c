@@ -1,4 +1,4 @@
-#include "gl/accuracy/preset_choice.h"
+#include "gl/accuracy/preset.h"
 
 #include "base/number.h"
 #include "gl/accuracy/frame_times.h"

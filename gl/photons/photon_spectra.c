@@ -1,6 +1,6 @@
 #include "gl/photons/photon_spectra.h"
 
-#include "gl/scene/spectra/interval_sums.h"
+#include "gl/scene/spectra/spectral_tables.h"
 
 #include <math.h>
 #include <stdlib.h>

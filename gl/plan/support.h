@@ -1,6 +1,6 @@
 /* support.h: what the renderer does not model, refused by name.
  *
- * Of scenes whose refractors single precision does not resolve, see gl/plan/examine/precision.h.
+ * Of scenes whose refractors single precision does not resolve, see gl/plan/examine/models.h.
  * Internal to gl/plan/.
  */
 #ifndef ABBE_GL_PLAN_SUPPORT_H

@@ -1,6 +1,6 @@
 #include "gl/scene/gpu_scene.h"
 
-#include "scenes/mesh/coarse_mesh.h"
+#include "scenes/mesh/mesh.h"
 
 #include <stdlib.h>
 

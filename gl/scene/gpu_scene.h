@@ -9,7 +9,7 @@
 #include "gl/plan/facts/render_desc.h"
 #include "gl/plan/plan.h"
 #include "gl/scene/spectra/spectral_tables.h"
-#include "scenes/environment/radiance_cube.h"
+#include "scenes/environment/radiance_map.h"
 #include "scenes/mesh/bvh.h"
 #include "scenes/scene.h"
 #include "scenes/view/map_layout.h"
@@ -21,7 +21,7 @@
 /* The charts of a plan's receivers, numbered through.
  *
  * Parallelograms come first, as the shaders count them, then the charts of meshes
- * (scenes/mesh/mesh_charts.h). It knows no light and no GL. */
+ * (scenes/mesh/mesh.h). It knows no light and no GL. */
 
 typedef struct abbe_receiver_charts {
   size_t count;
@@ -150,7 +150,7 @@ void abbe_gpu_area_lights_set(const abbe_gpu_scene *scene, GLuint program);
 
 /* gpu_meshes.c */
 void abbe_gpu_meshes_draw(const abbe_gpu_scene *scene, size_t object);
-/* By fewer triangles where that saves half of them (scenes/mesh/coarse_mesh.h). */
+/* By fewer triangles where that saves half of them (scenes/mesh/mesh.h). */
 void abbe_gpu_meshes_draw_coarse(const abbe_gpu_scene *scene, size_t object);
 abbe_result abbe_gpu_meshes_upload(abbe_gpu_scene *scene, abbe_error *error);
 /* Uploads one mesh by itself. */

@@ -1,6 +1,5 @@
 #include "colorimetry/matrix3.h"
 
-#include "colorimetry/reflectance/band_reflection.h"
 #include "colorimetry/reflectance/reflected_light.h"
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
@@ -78,7 +77,7 @@ static abbe_result fill_light(work *w, size_t l, abbe_error *error) {
 }
 
 /* gpu_surfaces.c: what receivers in colours reflect of bands of each light
- * (band_reflection.h), where the plan needs it. */
+ * (reflected_light.h), where the plan needs it. */
 static abbe_result gpu_band_reflections_upload(abbe_gpu_scene *scene, abbe_error *error) {
   const abbe_plan *plan = scene->plan;
   if (!plan->receiver_colours) return ABBE_OK;

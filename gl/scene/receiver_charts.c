@@ -1,7 +1,7 @@
 #include "gl/scene/gpu_scene.h"
 
 #include "base/maths.h"
-#include "scenes/mesh/mesh_charts.h"
+#include "scenes/mesh/mesh.h"
 
 #include <math.h>
 #include <stdlib.h>

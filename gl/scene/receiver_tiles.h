@@ -2,7 +2,7 @@
  * behind a point light, far off the map view's axis, or where a receiver hides the place.
  *
  * A chart is a parallelogram, or a part of a mesh within the parallelogram that bounds it
- * (scenes/mesh/mesh_charts.h). A tile is a window of one side of a chart and a rectangle of texels
+ * (scenes/mesh/mesh.h). A tile is a window of one side of a chart and a rectangle of texels
  * for it, in one layer beside the light's map. This chooses tiles from where light falls and lays
  * them out; it knows no GL. Internal to gl/.
  */

@@ -1,6 +1,6 @@
 #include "gl/scene/shader_variant.h"
 
-#include "colorimetry/reflectance/band_reflection.h"
+#include "colorimetry/reflectance/reflected_light.h"
 #include "gl/scene/spectra/camera_bands.h"
 
 #include <stdio.h>

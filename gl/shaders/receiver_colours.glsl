@@ -1,5 +1,5 @@
 // What a receiver in colours reflects of light that refractors have spread: the share of X, Y and Z by the
-// band of the light's spectrum that has that chromaticity (colorimetry/reflectance/band_reflection.h).
+// band of the light's spectrum that has that chromaticity (colorimetry/reflectance/reflected_light.h).
 
 // For each receiver and light its white x, y and where its tables begin (0: it has none); then the
 // tables, ring by ring of each direction: shares, and how far the spectral locus lies there.

@@ -1,4 +1,4 @@
-#include "library/choice/pareto_front.h"
+#include "library/choice/picture_choice.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -4,9 +4,8 @@
 #include "base/number.h"
 #include "base/yaml/yaml.h"
 #include "gl/accuracy/frame_times.h"
-#include "gl/accuracy/preset_choice.h"
+#include "gl/accuracy/preset.h"
 #include "gl/plan/plan.h"
-#include "library/choice/pareto_front.h"
 #include "library/choice/trace_times.h"
 
 #include <math.h>

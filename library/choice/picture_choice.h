@@ -15,6 +15,7 @@
 #include "validation/passes/pass_error.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #define ABBE_PICTURE_TOOLS(X) X(RENDER, "render") X(TRACE, "trace") X(TRACE_FILTER, "trace-filter")
 typedef enum abbe_picture_tool {
@@ -123,5 +124,26 @@ abbe_render_desc abbe_picture_point_desc(const abbe_picture_point *point);
 
 /* "the renderer: 7 wavelengths, ..." or "the tracer: 4 passes of 262144 photons, filtered". */
 void abbe_picture_describe(const abbe_picture_point *point, char *out, size_t size);
+
+/* Of many costs and errors, those that no other beats in both; and what to pick of them.
+ *
+ * The Pareto front of settings that cost time and make errors. It knows no settings: arrays in,
+ * flags and indices out. A cost or an error that is not finite, and a cost that is not positive,
+ * is not on the front. */
+
+/* Of count points those that no other beats, as indices in the order of cost (and so of falling
+ * error): none has at most their cost and at most their error, and less of one. Of equal points it
+ * is the first. Returns how many; order[count] has room. */
+size_t abbe_pareto_front_order(const double *cost, const double *error, size_t count,
+                               size_t *order);
+
+/* Where a front in that order, given by its costs and errors, bends most: the point furthest below
+ * the straight line between its ends in logarithms (an error of 0 counts as 1e-12). Without a bend,
+ * or with fewer than three points, the middle one: count
+ * 2. */
+size_t abbe_pareto_front_knee(const double *cost, const double *error, size_t count);
+
+/* The cheapest point of such a front whose error is at most 1 + slack times the least there is. */
+size_t abbe_pareto_front_accurate(const double *error, size_t count, double slack);
 
 #endif

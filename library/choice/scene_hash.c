@@ -1,4 +1,4 @@
-#include "library/choice/scene_hash.h"
+#include "library/choice/finer_scene.h"
 
 enum { INDEX_STEPS = 9 };
 

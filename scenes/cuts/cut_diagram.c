@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/maths.h"
 #include "base/number.h"
-#include "colorimetry/plot/chart_pen.h"
+#include "colorimetry/plot/chart_panel.h"
 #include "scenes/cuts/cut_measures.h"
 #include "scenes/cuts/cut_stretch.h"
 

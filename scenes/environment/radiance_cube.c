@@ -1,4 +1,4 @@
-#include "scenes/environment/radiance_cube.h"
+#include "scenes/environment/radiance_map.h"
 
 #include "base/maths.h"
 #include "base/thread/watch.h"

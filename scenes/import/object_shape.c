@@ -6,8 +6,6 @@
 #include "scenes/import/mesh/gltf_material.h"
 #include "scenes/import/scene_reading.h"
 #include "scenes/import/scene_value.h"
-#include "scenes/shapes/brilliant.h"
-#include "scenes/shapes/knot.h"
 #include "scenes/shapes/shape.h"
 #include "scenes/shapes/water.h"
 

@@ -1,6 +1,5 @@
 #include "scenes/import/scene_reading.h"
 
-#include "colorimetry/reflectance/colour_checker.h"
 #include "colorimetry/reflectance/reflected_light.h"
 #include "colorimetry/rgb_space.h"
 #include "scenes/import/scene_value.h"

@@ -1,4 +1,4 @@
-#include "scenes/lights/area_lights.h"
+#include "scenes/lights/environment_lights.h"
 
 #include "base/maths.h"
 

@@ -1,4 +1,4 @@
-#include "scenes/mesh/coarse_mesh.h"
+#include "scenes/mesh/mesh.h"
 
 #include "base/maths.h"
 #include "scenes/geometry/digest.h"

@@ -7,7 +7,6 @@
 #define ABBE_SCENES_MESH_MESH_H
 
 #include "base/error.h"
-
 #include "base/maths.h"
 
 #include <stdbool.h>
@@ -121,5 +120,43 @@ abbe_result abbe_mesh_transform(abbe_mesh *mesh, const double matrix[16], abbe_e
 /* Whether every vertex lies behind every face, to 1e-6 of the mesh's size. Larger meshes than
  * ABBE_MESH_MAX_CONVEX_FACES are not examined: false. */
 bool abbe_mesh_is_convex(const abbe_mesh *mesh);
+
+/* A smooth mesh by fewer triangles, for pictures that are drawn in a hurry.
+ *
+ * Vertices are merged cell by cell of a grid; each group is stood for by that vertex of it which
+ * is nearest to its middle [RossignacBorrel1993]. So what is left lies on the surface, with its
+ * normals. Vertices of a cell that look away from each other are two groups: the sides of a thin
+ * wall stay apart. Where two vertices stand at the same place, along a seam of normals, they stay
+ * as they are. It has no bound on its error but the cells' size. */
+
+/* About as many triangles as that are left, or more where a mesh is much folded. */
+#define ABBE_COARSE_MESH_FACES 24000u
+
+/* Whether it has many triangles and is smooth, but for some seams. */
+bool abbe_coarse_mesh_serves(const abbe_mesh *mesh);
+
+/* Triangles of the mesh's own vertices: *face is malloc'd, *count of them. What is seen of a closed
+ * mesh has no holes; triangles that would lie folded between others are left out. NULL and 0 for a
+ * mesh of which that saves less than half, and for one that it does not serve. ABBE_NO_MEMORY. */
+abbe_result abbe_coarse_mesh_make(const abbe_mesh *mesh, uint32_t (**face)[3], size_t *count,
+                                  abbe_error *error);
+
+/* Charts of a mesh: parts that can be laid out flat, each seen from one direction.
+ *
+ * A chart is what hangs together by edges of faces whose normals lie within 60 degrees of one of
+ * the six axes, so a place on it follows from its projection along that axis unless the chart
+ * winds over itself. Every face belongs to one chart. It knows no textures and no light. */
+
+typedef struct abbe_mesh_charts {
+  size_t count; /* 0 where no face has an area */
+  /* [count] corner, U, V: the rectangle that bounds it, across its axis; U x V points along that,
+   * to the side that the normals point to */
+  double (*parallelogram)[9];
+  uint32_t *face; /* [face_count] chart of each; faces without an area are of the first */
+} abbe_mesh_charts;
+
+/* ABBE_INVALID_ARGUMENT for what abbe_topology_make refuses, ABBE_NO_MEMORY. */
+abbe_result abbe_mesh_charts_make(const abbe_mesh *mesh, abbe_mesh_charts *out, abbe_error *error);
+void abbe_mesh_charts_free(abbe_mesh_charts *charts);
 
 #endif

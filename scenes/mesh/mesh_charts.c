@@ -1,4 +1,4 @@
-#include "scenes/mesh/mesh_charts.h"
+#include "scenes/mesh/mesh.h"
 
 #include "base/maths.h"
 #include "scenes/geometry/disjoint_sets.h"

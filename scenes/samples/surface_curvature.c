@@ -1,4 +1,4 @@
-#include "scenes/samples/surface_curvature.h"
+#include "scenes/samples/surface_samples.h"
 
 #include "base/maths.h"
 #include "scenes/samples/point_grid.h"

@@ -53,4 +53,21 @@ abbe_result abbe_surface_samples_make(const abbe_mesh *const *mesh, size_t mesh_
                                       abbe_surface_samples *out, abbe_error *error);
 void abbe_surface_samples_free(abbe_surface_samples *samples);
 
+/* How the normals of surfaces turn around sampled places, by regression over the denser points
+ * around them [WandStrasser2003]. */
+
+/* Along along[0] and along[1], unit tangents that with the normal are a right-handed frame, the
+ * normal turns by curvature[0] and curvature[1] (1/m, the first of the greater amount; above 0
+ * where normals spread) towards them. */
+typedef struct abbe_surface_curvature {
+  double along[2][3];
+  double curvature[2];
+} abbe_surface_curvature;
+
+/* Fits a linear normal for each sample, over the candidates within a spacing whose normals are less
+ * than 60 degrees from its own: their mean normal is that of the tangent plane. out: [count].
+ * Places with too few candidates are flat. ABBE_NO_MEMORY. */
+abbe_result abbe_surface_curvature_fit(const abbe_surface_samples *samples,
+                                       abbe_surface_curvature *out, abbe_error *error);
+
 #endif

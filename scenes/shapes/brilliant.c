@@ -1,4 +1,4 @@
-#include "scenes/shapes/brilliant.h"
+#include "scenes/shapes/shape.h"
 
 #include "base/maths.h"
 #include "scenes/shapes/convex.h"

@@ -1,4 +1,4 @@
-#include "scenes/shapes/knot.h"
+#include "scenes/shapes/shape.h"
 
 #include "base/maths.h"
 

@@ -42,4 +42,51 @@ abbe_result abbe_shape_lathe(const double (*profile)[2], size_t count, size_t ar
 abbe_result abbe_shape_round_profile(const double (*profile)[2], size_t count, size_t times,
                                      double (**out)[2], size_t *out_count, abbe_error *error);
 
+/* The round brilliant cut, the usual shape of a diamond, from its proportions.
+ *
+ * A crown of a table, 8 stars, 8 bezels and 16 upper halves; a girdle of 16 upright faces; a
+ * pavilion of 16 lower halves and 8 mains that meet in a point: 73 flat faces. Other cuts come as
+ * meshes. Terms and proportions are those of the trade [Moses2004]. */
+
+/* Zero means the default in every field but the diameter. */
+typedef struct abbe_brilliant {
+  double diameter;     /* between opposite corners of the girdle, metres */
+  double table;        /* its width between opposite corners, of the diameter; 0: 0.56 */
+  double crown_rad;    /* angle of the bezels above the girdle's plane; 0: 34.5 degrees */
+  double pavilion_rad; /* angle of the mains below it; 0: 40.75 degrees */
+  double star;         /* how far stars reach from the table's edge to the girdle; 0: 0.5 */
+  double lower;        /* how far lower halves reach from the girdle to the culet; 0: 0.77 */
+  double girdle;       /* its height where it is least, of the diameter; 0: 0.03 */
+} abbe_brilliant;
+
+/* Table up, the girdle's middle in z = 0, flat faces with normals of their own.
+ * ABBE_INVALID_ARGUMENT for proportions that are out of range or make no convex stone. */
+abbe_result abbe_brilliant_make(const abbe_brilliant *cut, abbe_mesh *out, abbe_error *error);
+
+/* A tube along a knot, with spines on its back: a curled solid with as many faces as wanted.
+ *
+ * Its middle line winds around a torus that stands around z, centred, and comes back to itself.
+ * Smooth normals are those of the surface itself. Lengths in metres. */
+
+#define ABBE_KNOT_MAX_SEGMENTS 4096
+#define ABBE_KNOT_MAX_WINDINGS 16
+#define ABBE_KNOT_MAX_SPINES 1024
+
+typedef struct abbe_knot {
+  double major, minor;  /* the torus: around z, and of its own tube */
+  double radius;        /* radius of the tube along the knot, where it has no spine */
+  size_t turns, coils;  /* around z, and through the torus's hole; 0: 2, 3; no common divisor */
+  size_t spines;        /* on the side away from the torus; 0: none */
+  double spine;         /* how far they stand out, of the radius, 0 to 2 */
+  size_t along, across; /* segments; 0: 1250, 100: 250,000 faces */
+} abbe_knot;
+
+/* 2 along across faces, closed. ABBE_INVALID_ARGUMENT where the tube would meet itself: it may be
+ * as wide as the middle line's global radius of curvature [GonzalezMaddocks1999]. ABBE_NO_MEMORY.
+ */
+abbe_result abbe_knot_make(const abbe_knot *knot, abbe_mesh *out, abbe_error *error);
+
+/* The radius of the widest tube along the middle line, m. */
+double abbe_knot_room(const abbe_knot *knot);
+
 #endif

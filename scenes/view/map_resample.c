@@ -1,4 +1,4 @@
-#include "scenes/view/map_resample.h"
+#include "scenes/view/map_layout.h"
 
 #include "base/maths.h"
 

@@ -5,7 +5,7 @@
  * are filled for a light where it stands (exit_light.h).
  *
  * All in the object's own coordinates: places from its centre in m, as it stood when the volume was
- * made. It holds numbers; validation/volume/volume_fill.h finds them out, volume_file.h stores
+ * made. It holds numbers; validation/volume/volume_fill.h finds them out, its file stores
  * them.
  */
 #ifndef ABBE_SCENES_VOLUME_CAUSTIC_VOLUME_H
@@ -13,7 +13,7 @@
 
 #include "base/error.h"
 #include "scenes/volume/light_exits.h"
-#include "scenes/volume/light_nodes.h"
+#include "scenes/volume/sphere_mesh.h"
 #include "scenes/volume/volume_body.h"
 #include "scenes/volume/volume_region.h"
 
@@ -99,5 +99,22 @@ void abbe_caustic_volume_flux(const abbe_caustic_volume *volume, const abbe_volu
  * cosine between the receiver's normal and -p. */
 void abbe_caustic_volume_ratio(const abbe_caustic_volume *volume, const abbe_volume_sight *sight,
                                const double p[3], double rgb[3]);
+
+/* Caustic volumes as OpenEXR files: one part, half precision, ZIP, written beside their target and
+ * renamed; what they are stands in named attributes.
+ *
+ * Pixels follow each other along rows, node after node and cell after cell; those that are left in
+ * the last row are 0. Channels are X.x, X.y, X.z, Y.x ... of a vector volume, R, G, B of a printed
+ * one. Of exits there are points, then exits node after node, then the cells' free space; channels
+ * are P.x to Dn.z, T and S. */
+
+/* ABBE_IO, ABBE_NO_MEMORY; ABBE_UNSUPPORTED for more values than a picture has pixels. */
+abbe_result abbe_volume_file_write(const char *path, const abbe_caustic_volume *volume,
+                                   abbe_error *error);
+
+/* Everything is checked before it is used: ABBE_NOT_FOUND for a picture that is no volume,
+ * ABBE_PARSE for an attribute that is broken or does not go with the pixels, errors of
+ * abbe_exr_read and abbe_volume_region_make. */
+abbe_result abbe_volume_file_read(const char *path, abbe_caustic_volume *out, abbe_error *error);
 
 #endif

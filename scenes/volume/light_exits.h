@@ -14,7 +14,7 @@
 #define ABBE_SCENES_VOLUME_LIGHT_EXITS_H
 
 #include "scenes/scene.h"
-#include "scenes/volume/light_nodes.h"
+#include "scenes/volume/sphere_mesh.h"
 
 #include <stdbool.h>
 

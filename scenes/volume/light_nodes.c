@@ -1,4 +1,4 @@
-#include "scenes/volume/light_nodes.h"
+#include "scenes/volume/sphere_mesh.h"
 
 #include "base/maths.h"
 

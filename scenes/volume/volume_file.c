@@ -1,4 +1,4 @@
-#include "scenes/volume/volume_file.h"
+#include "scenes/volume/caustic_volume.h"
 
 #include "base/maths.h"
 #include "base/number.h"

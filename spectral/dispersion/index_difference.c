@@ -1,4 +1,4 @@
-#include "spectral/dispersion/index_difference.h"
+#include "spectral/dispersion/index_points.h"
 
 #include <math.h>
 

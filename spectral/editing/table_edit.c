@@ -5,7 +5,6 @@
 #include "base/text_diff.h"
 #include "base/yaml/yaml_edit.h"
 #include "base/yaml/yaml_quote.h"
-#include "spectral/editing/table_place.h"
 #include "spectral/formats/material_import.h"
 #include "spectral/materials/material_table.h"
 #include "spectral/store/material_store.h"

@@ -10,7 +10,10 @@
 #define ABBE_SPECTRAL_EDITING_TABLE_EDIT_H
 
 #include "base/error.h"
+#include "base/yaml/yaml_edit.h"
+#include "spectral/materials/material_table.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef struct abbe_table_edit abbe_table_edit;
@@ -84,5 +87,53 @@ abbe_result abbe_table_edit_diff(const abbe_table_edit *edit, char **out, abbe_e
 /* Writes the file. ABBE_SCHEMA as above; ABBE_IO where the file is not as it was read. Without
  * changes nothing is written. */
 abbe_result abbe_table_edit_save(abbe_table_edit *edit, abbe_error *error);
+
+/* Where a record and a key of it stand in the text of a material table. */
+
+/* The index of the pair `materials` of the root, where it is a list or empty. */
+abbe_result abbe_table_place_list(const abbe_yaml_edit *edit, size_t *index, abbe_error *error);
+/* That list; absent where there is none. */
+abbe_yaml_node abbe_table_place_records(const abbe_yaml_edit *edit);
+
+/* The name of a record, or "". */
+const char *abbe_table_place_name(const abbe_yaml *yaml, abbe_yaml_node record);
+/* The record of that name, whatever the case, and its index in the list. ABBE_NOT_FOUND names the
+ * nearest; ABBE_INVALID_ARGUMENT where two have it; ABBE_UNSUPPORTED for an alias. */
+abbe_result abbe_table_place_record(const abbe_yaml_edit *edit, const char *name, size_t *index,
+                                    abbe_yaml_node *record, abbe_error *error);
+
+/* How far a path leads: the last collection on it, the step in it, and what is left of the path
+ * where that step is not there. */
+typedef struct abbe_table_place {
+  abbe_yaml_node parent;
+  size_t index;
+  bool found, in_record;
+  char rest[128]; /* the steps that are not there, dotted */
+} abbe_table_place;
+
+abbe_result abbe_table_place_key(const abbe_yaml_edit *edit, const char *name, const char *key,
+                                 abbe_table_place *out, abbe_error *error);
+/* The pair of the record that a new key goes after: the last that ranks no later. */
+size_t abbe_table_place_after(const abbe_yaml *yaml, abbe_yaml_node record, const char *key);
+/* ABBE_NOT_FOUND: the record has no such key. */
+abbe_result abbe_table_place_none(const abbe_yaml_edit *edit, const char *name, const char *key,
+                                  abbe_error *error);
+
+/* The fixes that a check is certain of, put into a table's text.
+ *
+ * Only what spectral/editing/check.h is certain of is changed, and only the bytes of the values
+ * concerned. Nothing is written to a file here. */
+
+typedef struct abbe_table_fix {
+  size_t fixed;     /* values that were set */
+  size_t refused;   /* that could not be, since a name stands twice or the text cannot carry it */
+  char why[400];    /* the first that was refused; "" without */
+  char warned[400]; /* names of fixed rows that have a warning, which may no longer hold: "a, b" */
+} abbe_table_fix;
+
+/* Fixes until nothing certain is left: one fix may bring out the next fault. ABBE_PARSE,
+ * ABBE_SCHEMA, ABBE_NO_MEMORY as the table's reading has them; what is refused is not a failure. */
+abbe_result abbe_table_fix_make(abbe_table_edit *edit, const abbe_material_table *known,
+                                abbe_table_fix *out, abbe_error *error);
 
 #endif

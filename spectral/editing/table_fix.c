@@ -1,4 +1,4 @@
-#include "spectral/editing/table_fix.h"
+#include "spectral/editing/table_edit.h"
 
 #include "spectral/editing/check.h"
 

@@ -1,4 +1,4 @@
-#include "spectral/editing/table_place.h"
+#include "spectral/editing/table_edit.h"
 
 #include "base/nearest.h"
 

@@ -1,4 +1,4 @@
-#include "spectral/formats/import_batch.h"
+#include "spectral/formats/material_import.h"
 
 #include "base/error.h"
 #include "base/file.h"

@@ -1,8 +1,7 @@
 /* material_import.h: materials from files of any kind that is read, into one table.
  *
- * Finds out what a file is and calls spectral/formats/material_import.h, material_import.h,
- * csv_points.h or material_table.h. What could not be used is noted and does not stop the rest.
- * Internal to spectral/.
+ * Finds out what a file is and reads it. What could not be used is noted and does not stop the
+ * rest.
  */
 #ifndef ABBE_SPECTRAL_FORMATS_MATERIAL_IMPORT_H
 #define ABBE_SPECTRAL_FORMATS_MATERIAL_IMPORT_H
@@ -96,5 +95,31 @@ abbe_result abbe_rii_parse(const char *text, size_t size, const char *path, cons
  * and for a number that is none, ABBE_SCHEMA where there is no such shader. */
 abbe_result abbe_mtlx_parse(const char *text, size_t size, const char *path,
                             abbe_material_table *out, abbe_report *report, abbe_error *error);
+
+/* Materials from many files and whole folders: those of one name are kept apart by the files that
+ * they come from. A file that cannot be used is noted and does not stop the rest. */
+
+typedef struct abbe_import_batch {
+  const char *const *path; /* [count] files and folders */
+  size_t count;
+  const char *prefix; /* stands before every name; NULL: none */
+  const char
+      *target; /* what the table is to be written to, so none of the files; NULL: not known */
+  abbe_import_options import;
+} abbe_import_batch;
+
+/* Adds what the files hold to the table, which may be zeroed; report may be NULL. From a folder
+ * come, in the order of their names and with the folders in it, those files that end in .agf, .yml,
+ * .yaml, .csv or .sqlite and hold materials; hidden ones and links to folders do not.
+ *
+ * Where several files have a material of one name, each is called FOLDER-NAME or FILE-NAME, after
+ * the part of its path by which they differ, with a note of kind RENAMED; where nothing differs,
+ * the first stays. One of several files that cannot be read is a note of kind SKIPPED.
+ *
+ * ABBE_INVALID_ARGUMENT for no path, for import.name with several files, and where the target is
+ * one of them; ABBE_IO where a path is neither a file nor a folder: before anything is read. The
+ * first file's own failure where no file could be used; ABBE_NO_MEMORY. */
+abbe_result abbe_import_batch_run(const abbe_import_batch *batch, abbe_material_table *into,
+                                  abbe_report *report, abbe_error *error);
 
 #endif

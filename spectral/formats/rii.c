@@ -2,7 +2,6 @@
 
 #include "base/encoding.h"
 #include "base/file.h"
-#include "base/html_text.h"
 #include "base/number.h"
 #include "base/yaml/yaml.h"
 #include "spectral/dispersion/points.h"

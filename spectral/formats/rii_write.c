@@ -1,6 +1,6 @@
 #include "spectral/formats/material_write.h"
 
-#include "base/html_text.h"
+#include "base/encoding.h"
 #include "base/number.h"
 #include "base/yaml/yaml_quote.h"
 #include "spectral/materials/absorption.h"

@@ -1,6 +1,6 @@
 #include "spectral/materials/convert.h"
 
-#include "spectral/dispersion/index_difference.h"
+#include "spectral/dispersion/index_points.h"
 
 #include <math.h>
 #include <string.h>

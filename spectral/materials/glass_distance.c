@@ -1,6 +1,6 @@
 #include "spectral/materials/glass_distance.h"
 
-#include "spectral/dispersion/index_difference.h"
+#include "spectral/dispersion/index_points.h"
 #include "spectral/materials/material_numbers.h"
 #include "spectral/wavelengths.h"
 

@@ -5,7 +5,7 @@
 #ifndef ABBE_SPECTRAL_MATERIALS_MATERIAL_NUMBERS_H
 #define ABBE_SPECTRAL_MATERIALS_MATERIAL_NUMBERS_H
 
-#include "spectral/dispersion/index_difference.h"
+#include "spectral/dispersion/index_points.h"
 #include "spectral/materials/material.h"
 
 #include <stdbool.h>

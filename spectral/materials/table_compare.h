@@ -8,7 +8,7 @@
 #define ABBE_SPECTRAL_MATERIALS_TABLE_COMPARE_H
 
 #include "base/error.h"
-#include "spectral/dispersion/index_difference.h"
+#include "spectral/dispersion/index_points.h"
 #include "spectral/materials/material_table.h"
 
 #include <stddef.h>

@@ -114,7 +114,6 @@ static const struct named {
     {"materials add", "from", READS},
     {"materials add", "record", READS},
     {"materials remove", "table", READS},
-    {"materials rename", "table", READS},
     {"materials import", "", READS},
     {"materials import", "output", WRITES},
     {"materials export", "output", WRITES},

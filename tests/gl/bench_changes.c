@@ -5,7 +5,7 @@
 #include "scenes/geometry/transform.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/object_motion.h"
-#include "scenes/volume/volume_file.h"
+#include "scenes/volume/caustic_volume.h"
 
 #include <math.h>
 #include <stdio.h>

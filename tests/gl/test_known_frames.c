@@ -3,7 +3,6 @@
 #include "tests/gl/frame.h"
 
 #include "base/maths.h"
-#include "validation/known/forms/catacaustic.h"
 #include "validation/known/forms/closed_form.h"
 
 static const abbe_render_desc tiny = {.width = 16,

@@ -17,7 +17,6 @@
 #include "scenes/mesh/mesh.h"
 #include "scenes/shapes/shape.h"
 #include "scenes/view/map_layout.h"
-#include "scenes/view/map_resample.h"
 #include "spectral/formats/material_table_load.h"
 
 #include "base/file.h"
@@ -315,12 +314,9 @@ GROUP(operation_setup, operation_teardown);
 
 TEST(pictures) {
   static const operation list[] = {
-      {"EXR", exr, 0},
-      {"PNG", png, 0},
-      {"charts", chart, 0},
-      {"curves", material_charts, 300},
-      {"weights", weights, 0},
-      {"display", display, 0},
+      {"EXR", exr, 0},         {"PNG", png, 0},
+      {"charts", chart, 0},    {"curves", material_charts, 300},
+      {"weights", weights, 0}, {"display", display, 0},
   };
   operation_check_all(list, sizeof list / sizeof *list);
 }

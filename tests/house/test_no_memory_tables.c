@@ -5,8 +5,6 @@
 #include "spectral/dispersion/fit.h"
 #include "spectral/editing/check.h"
 #include "spectral/editing/table_edit.h"
-#include "spectral/editing/table_fix.h"
-#include "spectral/formats/import_batch.h"
 #include "spectral/formats/material_import.h"
 #include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"

@@ -1,4 +1,4 @@
-#include "validation/compare/difference_picture.h"
+#include "validation/compare/file_comparison.h"
 
 #include "base/order.h"
 #include "colorimetry/plot/chart.h"

@@ -4,7 +4,6 @@
 #include "base/number.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/png_file.h"
-#include "validation/compare/difference_picture.h"
 
 #include <assert.h>
 #include <ctype.h>

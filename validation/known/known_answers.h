@@ -86,4 +86,12 @@ size_t abbe_known_answers_failed(const abbe_known_answers *answers);
 const char *abbe_known_answers_group(size_t index);
 const char *abbe_known_answers_describe(size_t index);
 
+/* The table of known answers as a picture: every row's error as a share of its tolerance, group by
+ * group, and above it the error against the photons where it was measured. */
+
+/* Writes a .png or .svg beside and renamed; errors as abbe_chart_write, and ABBE_INVALID_ARGUMENT
+ * where there are no answers. */
+abbe_result abbe_known_chart_write(const char *path, const abbe_known_answers *answers,
+                                   abbe_error *error);
+
 #endif

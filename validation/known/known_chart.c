@@ -1,4 +1,4 @@
-#include "validation/known/known_chart.h"
+#include "validation/known/known_answers.h"
 
 #include "colorimetry/plot/chart.h"
 

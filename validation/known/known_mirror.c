@@ -1,6 +1,5 @@
 /* Mirrors: what metals reflect, a ball's light from afar, images between two mirrors, and what a
  * ring throws onto its floor. */
-#include "validation/known/forms/catacaustic.h"
 #include "validation/known/forms/closed_form.h"
 #include "validation/known/known_light.h"
 

@@ -2,7 +2,6 @@
  * throws onto the bottom before that focus and behind it. */
 #include "base/maths.h"
 #include "validation/known/forms/closed_form.h"
-#include "validation/known/forms/wave_caustic.h"
 #include "validation/known/known_light.h"
 
 #include "base/number.h"

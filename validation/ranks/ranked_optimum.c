@@ -2,7 +2,6 @@
 
 #include "base/clock.h"
 #include "validation/gem/gem_grid_file.h"
-#include "validation/ranks/rank_files.h"
 
 #include <assert.h>
 #include <math.h>

@@ -5,8 +5,11 @@
 #ifndef ABBE_VALIDATION_RANKS_RANKED_OPTIMUM_H
 #define ABBE_VALIDATION_RANKS_RANKED_OPTIMUM_H
 
+#include "base/error.h"
 #include "validation/gem/gem_optimum.h"
 #include "validation/tracer/ranked_run.h"
+
+#include <stddef.h>
 
 typedef struct abbe_ranked_optimum_desc {
   const abbe_cut *cut;
@@ -15,7 +18,7 @@ typedef struct abbe_ranked_optimum_desc {
   const abbe_wavelengths *wavelengths;
   const abbe_weights *weights;
   const abbe_gem_optimum_desc *search; /* without parts; progress is of this rank's pairs */
-  const char *path;                    /* beside which ranks keep their files (rank_files.h) */
+  const char *path;                    /* beside which ranks keep their files */
   double keep_s;                       /* seconds between two writings of them */
 } abbe_ranked_optimum_desc;
 
@@ -26,5 +29,19 @@ typedef struct abbe_ranked_optimum_desc {
  * abbe_gem_grid_file_read and abbe_gem_grid_file_write. */
 abbe_result abbe_ranked_optimum_find(const abbe_ranks *ranks, const abbe_ranked_optimum_desc *desc,
                                      abbe_gem_optimum *out, abbe_error *error);
+
+/* What ranks (tracer/ranked_run.h) keep beside one file until it is whole: FILE.0, FILE.1 and so
+ * on, a rank's own each. It reads and writes none of them. */
+
+/* A rank's file, malloc'd. ABBE_NO_MEMORY. */
+abbe_result abbe_rank_files_name(const char *path, size_t rank, char **out, abbe_error *error);
+
+/* The ranks of which a file is there, whatever number of ranks there was, ascending, malloc'd; NULL
+ * where there is none. ABBE_IO for a folder that cannot be read, ABBE_NO_MEMORY. */
+abbe_result abbe_rank_files_find(const char *path, size_t **out_rank, size_t *out_count,
+                                 abbe_error *error);
+
+/* Removes them all, as far as that can be. */
+void abbe_rank_files_remove(const char *path);
 
 #endif

@@ -9,6 +9,8 @@
 #ifndef ABBE_CLI_VIEW_PICTURE_VIEW_FEED_H
 #define ABBE_CLI_VIEW_PICTURE_VIEW_FEED_H
 
+#include "base/error.h"
+#include "gl/renderer.h"
 #include "scenes/scene.h"
 #include "scenes/view/view.h"
 
@@ -91,5 +93,50 @@ abbe_result abbe_view_feed_add(abbe_view_feed *feed, const abbe_view_hits *hits,
 /* Follows what was added; nothing is to be freed then. *stop other than 0 leaves the rest out,
  * after a ray or a facet at most; stop may be NULL. */
 void abbe_view_feed_end(abbe_view_feed *feed, const abbe_scene *scene, const volatile int *stop);
+
+/* A pixel's spectrum by the reference tracer, long before a whole picture has one.
+ *
+ * A camera looks at nothing but the pixel, with many samples; the photons of each pass are as many
+ * as a picture has, and are gathered as widely. */
+
+#define ABBE_VIEW_SPOT_BANDS 40
+
+typedef struct abbe_view_spot {
+  size_t passes;
+  size_t bands;                          /* 0: there is none */
+  double nm[ABBE_VIEW_SPOT_BANDS];       /* their middles */
+  double radiance[ABBE_VIEW_SPOT_BANDS]; /* W/(m2 sr nm), mean over the pixel */
+  double stderr_of[ABBE_VIEW_SPOT_BANDS];
+} abbe_view_spot;
+
+/* Traces a pixel of the scene's picture of width x height pixels; at least four passes, and more
+ * until so many seconds are over, up to 16. ABBE_CANCELLED where *stop (may be NULL) becomes other
+ * than 0; errors of abbe_tracer_make. */
+abbe_result abbe_view_spot_trace(const abbe_scene *scene, size_t width, size_t height,
+                                 const size_t pixel[2], double seconds, const volatile int *stop,
+                                 abbe_view_spot *out, abbe_error *error);
+
+/* What is in a renderer beside its picture: the photons that feed a place, and the spectral map. */
+
+/* The renderer has drawn that scene. nm: the wavelength by which what is seen through a refractor
+ * is found, and about which photons are looked for first, at all others where there are none.
+ * ABBE_CANCELLED where *stop becomes other than 0. Errors of abbe_renderer_read_hits,
+ * ABBE_NO_MEMORY. */
+abbe_result abbe_view_look_feed(abbe_renderer *renderer, const abbe_scene *scene,
+                                const double point[3], double radius, double nm, volatile int *stop,
+                                abbe_view_feed *out, abbe_error *error);
+/* The same of twice as many photons a side as the renderer follows, and twice as many again until
+ * some are found or there are more than ABBE_VIEW_LOOK_PHOTONS: between a few that land far apart
+ * nothing is known. *out is what abbe_view_look_feed has found, and stays so where there are no
+ * more to follow. A renderer of its own follows them; the other stays as it is. Errors of
+ * abbe_renderer_make, too. */
+enum { ABBE_VIEW_LOOK_PHOTONS = 1024 };
+abbe_result abbe_view_look_closer(abbe_context *context, const abbe_renderer *renderer,
+                                  const abbe_scene *scene, const double point[3], double radius,
+                                  double nm, volatile int *stop, abbe_view_feed *out,
+                                  abbe_error *error);
+/* The map of the first light from which photons start; zeroed where there is none. Errors of
+ * abbe_renderer_read_map. */
+abbe_result abbe_view_look_map(abbe_renderer *renderer, abbe_image *out, abbe_error *error);
 
 #endif

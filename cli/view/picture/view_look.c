@@ -1,4 +1,4 @@
-#include "cli/view/picture/view_look.h"
+#include "cli/view/picture/view_feed.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "cli/view/picture/view_screen.h"
+#include "cli/view/picture/view_show.h"
 
 void abbe_view_screen_free(abbe_view_screen *s) {
   if (s->texture != 0) s->gl->DeleteTextures(1, &s->texture);

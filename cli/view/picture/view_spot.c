@@ -1,4 +1,4 @@
-#include "cli/view/picture/view_spot.h"
+#include "cli/view/picture/view_feed.h"
 
 #include "base/clock.h"
 #include "base/maths.h"

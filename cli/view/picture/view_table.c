@@ -1,4 +1,4 @@
-#include "cli/view/picture/view_table.h"
+#include "cli/view/picture/view_show.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

@@ -29,7 +29,7 @@ typedef struct abbe_view_event {
   bool down, shift, control;
 } abbe_view_event;
 
-/* A line as cli/view/view_serve.h lists them; it is taken apart in place. ABBE_PARSE says what is
+/* A line as cli/view/view_app.h lists them; it is taken apart in place. ABBE_PARSE says what is
  * wrong. */
 abbe_result abbe_view_event_read(char *line, abbe_view_event *out, abbe_error *error);
 

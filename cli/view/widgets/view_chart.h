@@ -3,7 +3,7 @@
 #ifndef ABBE_CLI_VIEW_WIDGETS_VIEW_CHART_H
 #define ABBE_CLI_VIEW_WIDGETS_VIEW_CHART_H
 
-#include "cli/view/picture/view_probe.h"
+#include "cli/view/picture/view_painter.h"
 
 /* Both take a place in the open panel. */
 void abbe_view_chart_spectrum(const abbe_view_probe *probe);

@@ -1,4 +1,4 @@
-#include "cli/view/work/view_files.h"
+#include "cli/view/work/view_scene.h"
 
 #include <stdlib.h>
 #include <string.h>

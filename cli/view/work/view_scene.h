@@ -2,7 +2,7 @@
  *
  * Objects stay where lights alone have changed, and all but the camera where that has moved: a mesh
  * takes longer to read than light to draw. It keeps one scene, and the one before only until its
- * owner has let go of it. Internal to cli/view/work/.
+ * owner has let go of it. Internal to cli/view/.
  */
 #ifndef ABBE_CLI_VIEW_WORK_VIEW_SCENE_H
 #define ABBE_CLI_VIEW_WORK_VIEW_SCENE_H
@@ -38,5 +38,22 @@ abbe_result abbe_view_scene_take(abbe_view_scene *scene, const abbe_view_documen
                                  abbe_error *error);
 void abbe_view_scene_drop(abbe_scene *scene);
 void abbe_view_scene_free(abbe_view_scene *scene);
+
+/* The files that a scene is read from, and whether they have changed on disk since. */
+
+/* Zeroed: none. */
+typedef struct abbe_view_files {
+  size_t count;
+  char **path;
+  long long *changed; /* when, as far as is known; below 0: there was no such file */
+} abbe_view_files;
+void abbe_view_files_free(abbe_view_files *files);
+
+/* Takes those of a scene that was just read, in place of others. Of what was there before the time
+ * stays as it was: somebody else may have read it then. Without memory all stay. */
+void abbe_view_files_take(abbe_view_files *files, abbe_view_scene_news *news);
+/* Whether one of them is another than before; each change is reported once. One that is gone is
+ * not. */
+bool abbe_view_files_changed(abbe_view_files *files);
 
 #endif

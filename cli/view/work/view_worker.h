@@ -9,7 +9,6 @@
 #define ABBE_CLI_VIEW_WORK_VIEW_WORKER_H
 
 #include "cli/view/picture/view_feed.h"
-#include "cli/view/picture/view_spot.h"
 #include "cli/view/state/view_document.h"
 #include "cli/view/state/view_refine.h"
 #include "cli/view/state/view_state.h"

@@ -1,4 +1,4 @@
-#include "gl/plan/examine/lit_window.h"
+#include "gl/plan/examine/light_views.h"
 
 #include "base/maths.h"
 

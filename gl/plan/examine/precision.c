@@ -1,4 +1,4 @@
-#include "gl/plan/examine/precision.h"
+#include "gl/plan/examine/models.h"
 
 #include "base/maths.h"
 #include "gl/plan/examine/light_views.h"

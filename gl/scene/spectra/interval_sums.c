@@ -1,9 +1,8 @@
-#include "gl/scene/spectra/interval_sums.h"
+#include "gl/scene/spectra/spectral_tables.h"
 
 #include "colorimetry/weights.h"
 #include "gl/device/float4.h"
 #include "gl/plan/examine/spectral_needs.h"
-#include "gl/scene/spectra/mirror_nodes.h"
 
 #include <math.h>
 

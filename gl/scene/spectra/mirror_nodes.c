@@ -1,4 +1,4 @@
-#include "gl/scene/spectra/mirror_nodes.h"
+#include "gl/scene/spectra/spectral_tables.h"
 
 #include "spectral/optics.h"
 

@@ -3,7 +3,6 @@
 #include "colorimetry/weights.h"
 #include "gl/plan/examine/spectral_needs.h"
 #include "gl/scene/spectra/band_parts.h"
-#include "gl/scene/spectra/interval_sums.h"
 
 #include <math.h>
 #include <stdlib.h>

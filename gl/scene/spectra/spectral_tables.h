@@ -9,12 +9,42 @@
 #ifndef ABBE_GL_SCENE_SPECTRA_SPECTRAL_TABLES_H
 #define ABBE_GL_SCENE_SPECTRA_SPECTRAL_TABLES_H
 
+#include "base/error.h"
 #include "colorimetry/weights.h"
 #include "gl/plan/facts/plan_facts.h"
-#include "gl/scene/spectra/mirror_nodes.h"
 #include "spectral/wavelengths.h"
 
 #include <stddef.h>
+
+/* What mirrors reflect, as photons and the camera's rays have it at their wavelengths.
+ *
+ * Light between two nodes is laid by what both of them carry, straight between them. A metal's
+ * reflectance may bend more than that between few nodes; so each node has a factor, which makes
+ * the polygon through all nodes, at normal incidence, the best one for the metal by least squares,
+ * by the light's brightness. */
+
+/* Absorbs factor times what Fresnel's reflectance of n + i k leaves, at most all; k below 0: the
+ * factor itself, at all angles. So what grazes it is reflected, whatever the factor is. */
+typedef struct abbe_mirror_node {
+  double factor, n, k;
+} abbe_mirror_node;
+
+/* The factor with which n + i k reflects so much at normal incidence. */
+double abbe_mirror_factor(double n, double k, double reflected);
+/* What that factor reflects. */
+double abbe_mirror_reflected(double n, double k, double factor);
+
+/* out[w->count] of the mirror, at the wavelengths w, for that light over their range.
+ * ABBE_OUT_OF_RANGE where its metal is not known there, ABBE_NO_MEMORY. */
+abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelengths *w,
+                                   const abbe_weights_range *light, abbe_mirror_node *out,
+                                   abbe_error *error);
+
+/* The material whose index gives how far along from node to node light is laid that first met
+ * refractor i of the plan: its own; of a mirror, which sends all wavelengths in one direction, that
+ * of the first refractor that is none. NULL: there is none. */
+const abbe_material *abbe_mirror_nodes_laid_by(const abbe_scene *scene, const abbe_plan *plan,
+                                               size_t i);
 
 /* What refractors and mirrors take of the bands of photons' wavelengths, by what a path passed of
  * them (gl/plan/examine/spectral_needs.h). */
@@ -25,7 +55,7 @@ typedef struct abbe_spectral_tables {
   abbe_wavelengths all;    /* the plan's */
   abbe_wavelengths coarse; /* those that every photon takes, with bands of their own; or all */
 
-  double *index, *attenuation; /* [refractors][all]; of a mirror as mirror_nodes.h says; 1/m */
+  double *index, *attenuation; /* [refractors][all]; of a mirror as abbe_mirror_nodes says; 1/m */
   double *attenuation_550;     /* [refractors], 1/m at 550 nm */
   abbe_mirror_node *mirror;    /* [refractors][all]; zero of what is none */
   abbe_weights camera;         /* XYZ of all under the first light: none is negative */
@@ -33,7 +63,7 @@ typedef struct abbe_spectral_tables {
   /* Tables for photons, where the plan has caustics; else NULL. First by the coarse set, then by
    * all, where that is more. */
   size_t steps;                        /* steps of an interval */
-  float (*intervals)[4];               /* interval_sums.h: X, Y, Z */
+  float (*intervals)[4];               /* X, Y, Z */
   float (*tints)[ABBE_TINT_TEXELS][4]; /* spectral_tables.h; NULL where hits keep none */
   /* [light views][all]: Y of the band below and above the node, by all and by the coarse set */
   float (*sample_weight)[4];
@@ -56,5 +86,26 @@ abbe_result abbe_spectral_tables_intervals(const abbe_spectral_tables *tables,
 
 /* Index among so many wavelengths of node k of a coarse set of so many. */
 size_t abbe_spectral_tables_node(size_t wavelengths, size_t nodes, size_t k);
+
+/* The light between neighbouring wavelengths, summed in steps, with how far along the index has
+ * moved: what photons lay between their hits. */
+
+typedef struct abbe_interval_sums {
+  const abbe_scene *scene;
+  const abbe_plan *plan;
+  size_t steps; /* steps of an interval; even */
+  size_t bands,
+      band; /* band of the range whose light is summed, and the first of the three; 0: X, Y, Z */
+} abbe_interval_sums;
+
+/* Texels of a step: XYZ up to it and how far along the index has moved; the sums of XYZ times that,
+ * and the index; where hits keep tints, XYZ times the refractor's attenuation, by amount. */
+size_t abbe_interval_sums_texels(const abbe_plan *plan);
+/* Texels of all lights and refractors for a sampling of so many nodes. */
+size_t abbe_interval_sums_size(const abbe_plan *plan, size_t steps, size_t nodes);
+
+/* out: [light views][refractors][w->count + 1 intervals][steps + 1][texels]; returns its end. */
+float (*abbe_interval_sums_fill(const abbe_interval_sums *of, const abbe_wavelengths *w,
+                                float (*out)[4]))[4];
 
 #endif

@@ -47,7 +47,7 @@ TEST(records_come_and_go) {
                      "source='own: 3 May'" TABLE);
   run_must("printf 'name: x\\nmodel: constant\\ncoefficients: [2]\\nsource: s\\n' | \"$abbe\" "
            "materials add --record -" TABLE);
-  run_must(MATERIALS "rename x 'x, the last'" TABLE);
+  run_must(MATERIALS "set x name='x, the last'" TABLE);
   run_must(MATERIALS "remove n-bk7 MY-F2" TABLE);
   run_must("cat t.yaml && rm t.yaml");
   assert_string_equal(run_output, "materials:\n  - name: mine\n    model: cauchy\n"
@@ -95,7 +95,6 @@ TEST(wrong_use_gets_a_sentence) {
       {MATERIALS "set k5" TABLE, "Write KEY=VALUE", 2},
       {MATERIALS "set k5 red" TABLE, "'red' sets nothing", 2},
       {MATERIALS "set k5 source=" TABLE, "--unset source", 1},
-      {MATERIALS "set k5 name=x" TABLE, "abbe materials rename k5 NEW", 1},
       {MATERIALS "set k6 source=x" TABLE, "did you mean 'k5'?", 1},
       {MATERIALS "set k5 range_nm=380:780" TABLE, "'range_nm' wants a list of 2 numbers", 1},
       {MATERIALS "set k5 'range_nm=[380'" TABLE, "break the file", 1},
@@ -119,13 +118,11 @@ TEST(wrong_use_gets_a_sentence) {
       {MATERIALS "remove" TABLE, "remove what?", 2},
       {MATERIALS "remove k5 k5" TABLE, "no material 'k5'", 1},
       {MATERIALS "remove fused-silica bk7 k5 bak4 baf10" TABLE, "at least one", 1},
-      {MATERIALS "rename k5" TABLE, "to what?", 2},
-      {MATERIALS "rename k5 BK7" TABLE, "is taken", 1},
-      {MATERIALS "rename k5 ' x'" TABLE, "'name'", 1},
+      {MATERIALS "set k5 name=BK7" TABLE, "is taken", 1},
+      {MATERIALS "set k5 name=' x'" TABLE, "'name'", 1},
       {MATERIALS "diff t.yaml", "Name two tables", 2},
       {MATERIALS "diff t.yaml no.yaml", "no.yaml: cannot be opened", 1},
       {MATERIALS "diff a b c", "one argument too many", 2},
-      {MATERIALS "rename a b c" TABLE, "one argument too many", 2},
   };
   run_must(RENEW "true");
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -139,8 +136,8 @@ TEST(wrong_use_gets_a_sentence) {
 
 /* Each line of the examples is a command or its next line: none was broken to fit the page. */
 TEST(help_shows_examples) {
-  const char *const verbs[] = {"list", "show", "plot", "nearest", "check",  "fit",    "from",
-                               "diff", "set",  "add",  "remove",  "rename", "import", "export"};
+  const char *const verbs[] = {"list", "show", "plot", "nearest", "check",  "fit",   "from",
+                               "diff", "set",  "add",  "remove",  "import", "export"};
   for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++) {
     char line[96], example[64];
     snprintf(line, sizeof line, MATERIALS "%s --help", verbs[i]);

@@ -2,8 +2,7 @@
  * white and of tints what the mixture does, of greys always their share. */
 #include "tests/check.h"
 
-#include "colorimetry/reflectance/band_reflection.h"
-#include "colorimetry/reflectance/colour_checker.h"
+#include "colorimetry/reflectance/reflected_light.h"
 #include "colorimetry/rgb_space.h"
 #include "tests/random.h"
 

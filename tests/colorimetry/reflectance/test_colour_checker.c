@@ -1,6 +1,5 @@
 #include "tests/check.h"
 
-#include "colorimetry/reflectance/colour_checker.h"
 #include "colorimetry/reflectance/reflected_light.h"
 
 static abbe_spectrum *make(const char *name) {

@@ -1,7 +1,6 @@
 #include "tests/check.h"
 
 #include "colorimetry/observer.h"
-#include "colorimetry/reflectance/colour_checker.h"
 #include "colorimetry/reflectance/reflected_light.h"
 #include "colorimetry/rgb_space.h"
 

@@ -1,5 +1,5 @@
 /* Error bars in false colours: black where there is no error, white at the scale's end. */
-#include "gl/accuracy/error_picture.h"
+#include "gl/accuracy/error_bars.h"
 
 #include "colorimetry/image/colour_map.h"
 #include "colorimetry/image/png_file.h"

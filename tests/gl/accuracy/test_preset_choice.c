@@ -2,7 +2,7 @@
  */
 #include "tests/gl/frame.h"
 
-#include "gl/accuracy/preset_choice.h"
+#include "gl/accuracy/preset.h"
 
 #include <unistd.h>
 

@@ -4,7 +4,6 @@
 
 #include "base/maths.h"
 #include "validation/known/forms/closed_form.h"
-#include "validation/known/forms/wave_caustic.h"
 
 /* Bins are wider than the seam between two levels of the map. */
 enum { SIDE = 256, BINS = 4 };

@@ -2,7 +2,7 @@
  * as the tracer has it. Without tables of bands the red ones below are off by 0.4 to 0.8. */
 #include "tests/gl/frame.h"
 
-#include "colorimetry/reflectance/colour_checker.h"
+#include "colorimetry/reflectance/reflected_light.h"
 #include "gl/plan/plan.h"
 #include "validation/tracer/tracer.h"
 

@@ -1,7 +1,7 @@
 /* Fronts: known ones by hand, the definition itself over random points, and what is picked. */
 #include "tests/check.h"
 
-#include "library/choice/pareto_front.h"
+#include "library/choice/picture_choice.h"
 #include "tests/random.h"
 
 TEST(a_front_by_hand) {

@@ -1,7 +1,7 @@
 /* A reference stays with its scene: what changes a crystal's picture changes the hash. */
 #include "tests/scenes/scene_text.h"
 
-#include "library/choice/scene_hash.h"
+#include "library/choice/finer_scene.h"
 
 #define SCENE "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR
 

@@ -3,7 +3,7 @@
 
 #include "base/maths.h"
 #include "scenes/environment/environment_source.h"
-#include "scenes/environment/radiance_cube.h"
+#include "scenes/environment/radiance_map.h"
 
 TEST(solid_angles_fill_the_sphere) {
   for (size_t side = 1; side <= 32; side *= 2) {

@@ -2,7 +2,7 @@
 #include "tests/scenes/scene_text.h"
 
 #include "base/maths.h"
-#include "scenes/lights/area_lights.h"
+#include "scenes/lights/environment_lights.h"
 
 #define DISK                                                                                       \
   "lights:\n- {name: panel, kind: disk, position: [0, 0, 0.5], direction: [0, 0, -1], radius: "    \

@@ -1,5 +1,5 @@
 /* Coarser meshes against what they must keep: the surface without holes, its sides apart. */
-#include "scenes/mesh/coarse_mesh.h"
+#include "scenes/mesh/mesh.h"
 
 #include "base/maths.h"
 #include "scenes/shapes/shape.h"

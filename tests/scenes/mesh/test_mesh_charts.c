@@ -1,7 +1,7 @@
 #include "tests/check.h"
 
 #include "base/maths.h"
-#include "scenes/mesh/mesh_charts.h"
+#include "scenes/mesh/mesh.h"
 #include "scenes/shapes/shape.h"
 
 /* Laws of every mesh: a face's corners lie in its chart's rectangle, and its normal within 60

@@ -3,7 +3,7 @@
 #include "tests/check.h"
 
 #include "base/maths.h"
-#include "scenes/samples/surface_curvature.h"
+#include "scenes/samples/surface_samples.h"
 #include "scenes/shapes/shape.h"
 
 static abbe_surface_curvature *fit(const abbe_mesh *mesh, abbe_surface_samples *s) {

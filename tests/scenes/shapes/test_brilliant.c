@@ -1,8 +1,8 @@
 #include "tests/check.h"
 
 #include "base/maths.h"
-#include "scenes/shapes/brilliant.h"
 #include "scenes/shapes/convex.h"
+#include "scenes/shapes/shape.h"
 
 #define DEGREES (180 / 3.14159265358979323846)
 

@@ -2,7 +2,6 @@
 
 #include "base/maths.h"
 #include "scenes/geometry/transform.h"
-#include "scenes/shapes/brilliant.h"
 #include "scenes/shapes/convex.h"
 #include "scenes/shapes/shape.h"
 

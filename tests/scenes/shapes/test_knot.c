@@ -3,7 +3,7 @@
 
 #include "base/maths.h"
 #include "scenes/mesh/mesh.h"
-#include "scenes/shapes/knot.h"
+#include "scenes/shapes/shape.h"
 
 static const abbe_knot plain = {.turns = 2,
                                 .coils = 3,

@@ -1,7 +1,7 @@
 /* Maps in other texels: light is kept, lands in the right place, and falls off the edges. */
 #include "tests/check.h"
 
-#include "scenes/view/map_resample.h"
+#include "scenes/view/map_layout.h"
 
 /* Looks down from 2 m up, turned by `tilt`, with axes bent by `bend` (0: straight). */
 static abbe_map_layout layout_of(bool orthographic, double tilt, double bend, double window) {

@@ -3,7 +3,7 @@
 #include "tests/random.h"
 
 #include "base/maths.h"
-#include "scenes/volume/light_nodes.h"
+#include "scenes/volume/sphere_mesh.h"
 
 static const double up[3] = {0, 0, 2};
 

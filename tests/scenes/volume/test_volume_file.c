@@ -2,7 +2,7 @@
 #include "tests/scenes/volume/volumes.h"
 
 #include "colorimetry/image/exr.h"
-#include "scenes/volume/volume_file.h"
+#include "scenes/volume/caustic_volume.h"
 
 #include <unistd.h>
 

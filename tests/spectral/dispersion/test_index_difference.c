@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "spectral/dispersion/index_difference.h"
+#include "spectral/dispersion/index_points.h"
 
 static const abbe_dispersion a = {.model = ABBE_DISPERSION_CAUCHY, .count = 2, .c = {1.51, 0.0040}};
 static const abbe_dispersion b = {.model = ABBE_DISPERSION_CAUCHY, .count = 2, .c = {1.50, 0.0040}};

@@ -1,7 +1,7 @@
 #include "tests/check.h"
 #include "tests/spectral/shipped_table.h"
 
-#include "spectral/editing/table_fix.h"
+#include "spectral/editing/table_edit.h"
 
 static abbe_table_edit *open_edit(const char *text) {
   abbe_table_edit *edit = NULL;

@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "spectral/formats/import_batch.h"
+#include "spectral/formats/material_import.h"
 
 #include <sys/stat.h>
 #include <unistd.h>

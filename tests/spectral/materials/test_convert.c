@@ -2,7 +2,7 @@
 #include "tests/random.h"
 #include "tests/spectral/shipped_table.h"
 
-#include "spectral/dispersion/index_difference.h"
+#include "spectral/dispersion/index_points.h"
 #include "spectral/materials/convert.h"
 
 static abbe_dispersion made(abbe_given given, abbe_fit_form form) {

@@ -2,7 +2,7 @@
 #include "tests/random.h"
 #include "tests/spectral/shipped_table.h"
 
-#include "spectral/dispersion/index_difference.h"
+#include "spectral/dispersion/index_points.h"
 #include "spectral/materials/glass_distance.h"
 
 static const char *name_of(const abbe_glass_distances *d, size_t i) {

@@ -1,4 +1,4 @@
-#include "validation/compare/difference_picture.h"
+#include "validation/compare/file_comparison.h"
 
 #include "colorimetry/image/colour_map.h"
 #include "colorimetry/image/png_file.h"

@@ -4,7 +4,7 @@
 #include "tests/svg.h"
 
 #include "base/file.h"
-#include "validation/known/known_chart.h"
+#include "validation/known/known_answers.h"
 
 #include <unistd.h>
 

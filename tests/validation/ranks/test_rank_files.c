@@ -1,4 +1,4 @@
-#include "validation/ranks/rank_files.h"
+#include "validation/ranks/ranked_optimum.h"
 
 #include "base/file.h"
 #include "tests/check.h"

@@ -7,7 +7,6 @@
 #include "tests/validation/gem/gem_stones.h"
 #include "tests/validation/ranks/forked_ranks.h"
 #include "validation/gem/gem_grid_file.h"
-#include "validation/ranks/rank_files.h"
 
 static const char *const path = "ranked_optimum.csv";
 

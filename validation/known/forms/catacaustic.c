@@ -1,4 +1,4 @@
-#include "validation/known/forms/catacaustic.h"
+#include "validation/known/forms/closed_form.h"
 
 #include <math.h>
 

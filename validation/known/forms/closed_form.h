@@ -77,4 +77,55 @@ typedef struct abbe_prism_ray {
 bool abbe_closed_form_prism_ray(double apex, double n, double incidence, double along,
                                 abbe_prism_ray *ray);
 
+/* What a vertical mirror cylinder throws onto the floor that it stands on.
+ *
+ * In plan a ray's course does not depend on how steeply it falls, so the floor shows the planar
+ * caustic of a circle by reflection: of parallel light a nephroid, of a light on the wall a
+ * cardioid. Double precision, whole rays, any number of reflections; the wall reflects all. */
+
+/* The cylinder's axis is z, its foot stands in z = 0. */
+typedef struct abbe_catacaustic {
+  double radius, height; /* m */
+  double elevation; /* rad above the horizon, of a sun whose light travels along +x; 0: a light */
+  double lamp[3];   /* m, inside in plan, above the floor */
+} abbe_catacaustic;
+
+/* Irradiance at the place p of the floor, inside the cylinder, by light that was reflected
+ * `bounces` >= 1 times: for a sun of 1 W/m2 across the beam or a light of 1 W/sr. It is infinite at
+ * folds. *branches (may be NULL): by how many rays. */
+double abbe_catacaustic_irradiance(const abbe_catacaustic *c, const double p[2], size_t bounces,
+                                   size_t *branches);
+
+/* Its mean over the square of side 2 half around p, by steps x steps places, for 1 to `bounces`
+ * reflections together, each of which leaves the share `reflectance`. *branches: at p. */
+double abbe_catacaustic_mean(const abbe_catacaustic *c, const double p[2], double half,
+                             size_t steps, double reflectance, size_t bounces, size_t *branches);
+
+/* What light that falls straight onto a sinusoidal surface makes on a level plane in the water, by
+ * Snell's and Fresnel's laws.
+ *
+ * The surface is z = amplitude cos(2 pi x / wavelength), light comes down along -z, and the plane
+ * lies at z = -depth. A ray is one number, where it enters, so irradiance is a sum over branches
+ * of T / |dX/dx|. Double precision; it knows nothing of scenes, the tracer or the renderer. */
+
+typedef struct abbe_wave_caustic {
+  double amplitude, wavelength, depth; /* m */
+  double index;                        /* index of the water */
+  double attenuation_per_m;            /* natural, along the slanting path */
+} abbe_wave_caustic;
+
+/* Where light that enters at x meets the bottom, m, and in *passed (may be NULL) which share of it
+ * does. */
+double abbe_wave_caustic_landing(const abbe_wave_caustic *w, double x, double *passed);
+
+/* Depth below the crest at which the rays beside it meet: n / ((n - 1) a k^2). */
+double abbe_wave_caustic_focus(const abbe_wave_caustic *w);
+
+/* Mean irradiance from x = from to x = to on the plane, of 1 W/m2 above, by `rays` even steps of
+ * where light enters. */
+double abbe_wave_caustic_mean(const abbe_wave_caustic *w, double from, double to, size_t rays);
+
+/* By how many rays the place x is lit, counted over `rays` even steps. */
+size_t abbe_wave_caustic_branches(const abbe_wave_caustic *w, double x, size_t rays);
+
 #endif

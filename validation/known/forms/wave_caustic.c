@@ -1,7 +1,6 @@
-#include "validation/known/forms/wave_caustic.h"
+#include "validation/known/forms/closed_form.h"
 
 #include "base/maths.h"
-#include "validation/known/forms/closed_form.h"
 
 #include <math.h>
 

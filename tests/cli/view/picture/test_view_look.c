@@ -1,7 +1,7 @@
 /* A place that a caustic lights is fed by photons, however few the picture has. */
 #include "tests/gl/frame.h"
 
-#include "cli/view/picture/view_look.h"
+#include "cli/view/picture/view_feed.h"
 
 /* The sun through a brick, half a metre wide, over a floor. */
 static const char text[] =

@@ -3,8 +3,8 @@
 #include "tests/scenes/scene_text.h"
 
 #include "base/maths.h"
-#include "cli/view/picture/view_probe.h"
-#include "cli/view/picture/view_spot.h"
+#include "cli/view/picture/view_feed.h"
+#include "cli/view/picture/view_painter.h"
 #include "cli/view/state/view_camera.h"
 
 /* A lamp near to the floor, so that each pixel has its own light. */

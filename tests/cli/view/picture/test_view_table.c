@@ -1,7 +1,7 @@
 /* A table that a thread makes: none at first, then the one that abbe_display_table_make makes. */
 #include "tests/check.h"
 
-#include "cli/view/picture/view_table.h"
+#include "cli/view/picture/view_show.h"
 
 #include <time.h>
 

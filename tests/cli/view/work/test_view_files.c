@@ -1,7 +1,7 @@
 /* Files are watched as they were read. */
 #include "tests/check.h"
 
-#include "cli/view/work/view_files.h"
+#include "cli/view/work/view_scene.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -2,7 +2,7 @@
  */
 #include "tests/check.h"
 
-#include "gl/scene/spectra/mirror_nodes.h"
+#include "gl/scene/spectra/spectral_tables.h"
 #include "spectral/formats/material_table_load.h"
 #include "spectral/optics.h"
 

@@ -2,7 +2,6 @@
 #include "tests/gl/plan/planned.h"
 
 #include "gl/plan/examine/spectral_needs.h"
-#include "gl/scene/spectra/interval_sums.h"
 #include "gl/scene/spectra/spectral_tables.h"
 
 enum { NODES = 9 };

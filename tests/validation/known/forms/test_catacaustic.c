@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "base/maths.h"
-#include "validation/known/forms/catacaustic.h"
+#include "validation/known/forms/closed_form.h"
 
 static double sun_on_axis(double x, size_t *branches) {
   const abbe_catacaustic c = {.radius = 1, .height = 1, .elevation = ABBE_PI / 4};

@@ -1,6 +1,6 @@
 /* Light under a sinusoidal surface against what is known of it in closed form. */
 #include "base/maths.h"
-#include "validation/known/forms/wave_caustic.h"
+#include "validation/known/forms/closed_form.h"
 
 #include "tests/check.h"
 
