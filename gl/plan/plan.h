@@ -16,9 +16,9 @@
  * light with a size, and no lights for them yet. */
 bool abbe_plan_surrounds(const abbe_scene *scene);
 /* The scene with points for its lights that have a size, and with directional lights for its
- * environment, as the renderer takes it (scenes/lights/environment_lights.h,
- * scenes/environment_lights.h): for who looks up the plan's lights. before: an earlier such copy
- * that it may take lights over from, or NULL. abbe_environment_lights_drop frees it. */
+ * environment, as the renderer takes it (scenes/lights/environment_lights.h): for who looks up the
+ * plan's lights. before: an earlier such copy that it may take lights over from, or NULL.
+ * abbe_environment_lights_drop frees it. */
 abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *desc,
                                const abbe_scene *before, abbe_scene *out, abbe_error *error);
 
