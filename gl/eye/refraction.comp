@@ -20,6 +20,9 @@ layout(local_size_x = 256) in;
 #define SPREAD_OF(path) no_spread()
 #endif
 
+#ifdef LAYERS
+#undef SHOWN_RECEIVERS
+#endif
 // Pixel as below; joined bands (a bit each), level (four bits) whose bands are wanted, and how many
 // levels above it they were joined.
 #ifdef REFINED
@@ -56,12 +59,19 @@ uniform vec3 eye;
 uniform float share_limit;
 uniform mat3 xyz_from_rgb;
 uniform float pixel_angle;  // rad
+#ifdef SHOWN_RECEIVERS
+uniform sampler2DArray eye_receivers;  // what the camera sees of them, refractors taken away; w: how far off
+uniform vec2 receiver_samples;
+#endif
 
 // As in receiver.glsl.
 vec4 own_eye_view[6];
 vec3 own_eye;
 vec2 own_eye_samples;
 float own_share_limit, own_pixel_angle;
+#ifdef SHOWN_RECEIVERS
+vec2 own_receiver_samples;
+#endif
 mat3 own_xyz_from_rgb;
 
 void copy_all() {
@@ -73,6 +83,9 @@ void copy_all() {
   own_share_limit = read_now(share_limit);
   own_pixel_angle = read_now(pixel_angle);
   own_xyz_from_rgb = read_now(xyz_from_rgb);
+#ifdef SHOWN_RECEIVERS
+  own_receiver_samples = read_now(receiver_samples);
+#endif
 }
 
 #define eye_view own_eye_view
@@ -125,6 +138,27 @@ float lobe_width, lobe_ways;
 #endif
 float seen_at;  // how far off what was seen last is, where it is a receiver or light
 
+#ifdef SHOWN_RECEIVERS
+// A receiver shows the same from everywhere: what the camera has seen of it, where it sees that side, not too
+// flatly, and no less sharply than the ray that comes along d after t.
+bool shown_to_camera(Sighting at, vec3 d, float t, Spread spread, out vec3 radiance) {
+  const float LEAST_FACING = 0.15, FAR_OFF = 2.0;  // FAR_OFF: samples that the place may lie off what is seen there
+  View view = camera_view();
+  vec3 uvz;
+  bool before = project(view, at.p, uvz) && inside(uvz.xy), perspective = view.origin.w > 0.5;
+  vec4 there = texelFetch(eye_receivers, ivec3(before ? uvz.xy * own_receiver_samples : vec2(0), 0), 0);
+  float far = distance(eye, at.p), facing = dot(at.n, perspective ? (eye - at.p) / far : -view.forward.xyz);
+  float sample_m = pixel_angle * (perspective ? far : 1.0) * eye_samples.y / own_receiver_samples.y;
+  radiance = there.rgb;
+#if defined(WALK) || defined(SPHERES)
+  vec3 x = spread.place_x + t * spread.turn_x, y = spread.place_y + t * spread.turn_y;
+  float wide = min(length(x - dot(x, d) * d), length(y - dot(y, d) * d));
+  if (wide < 0.5 * sample_m) return false;
+#endif
+  return before && facing > LEAST_FACING && abs(there.w - far) * facing < FAR_OFF * sample_m;
+}
+#endif
+
 // Radiance along the ray from p, refractors taken away, of a receiver no farther than t_max; met:
 // there is one. spread: of the ray, where it meets none.
 vec3 seen(vec3 p, vec3 d, Spread spread, float t_min, float t_max, out bool met) {
@@ -159,8 +193,17 @@ vec3 seen(vec3 p, vec3 d, Spread spread, float t_min, float t_max, out bool met)
   waiting_place = at.place;
   return vec3(0);
 #endif
-  Shading s = shade(at.p, at.n, at.surface, at.uv, at.side);
-  return s.direct + s.caustic + s.fill;
+  vec3 radiance = vec3(0);
+  int shown = 0;
+#ifdef SHOWN_RECEIVERS
+  if (shown_to_camera(at, d, t, spread, radiance)) shown = 1;
+#endif
+  while (shown < 1) {  // not a branch: a software rasteriser follows those for all lanes
+    Shading s = shade(at.p, at.n, at.surface, at.uv, at.side);
+    radiance = s.direct + s.caustic + s.fill;
+    shown++;
+  }
+  return radiance;
 }
 
 // What the pixel's ray meets first; look() says.

@@ -60,6 +60,12 @@ static bool keeps_sights(const abbe_refraction_pass *pass) {
          plan->parallelogram_count <= MOST_SHEETS;
 }
 
+/* Rays know how wide they are, and so where what receivers show to the camera will do. */
+static bool shows_receivers(const abbe_refraction_pass *pass) {
+  const abbe_gpu_scene *scene = scene_of(pass);
+  return scene->environment.texture != 0 && !pass->keeps && !scene->plan->desc.everything;
+}
+
 /* The exits of a path, followed at the most, and the share of its light below which it ends. */
 static size_t exits_of(const abbe_refraction_pass *pass) {
   const abbe_plan *plan = scene_of(pass)->plan;
@@ -87,10 +93,12 @@ static abbe_result make_list(abbe_refraction_pass *pass, const abbe_shader_varia
 static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_variant *variant,
                                  abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  char facts[128], refined[128];
+  char facts[128], refined[128], shares[64];
   abbe_shader_variant camera = *variant;
   camera.exits = exits_of(pass);
-  const char *shares = shares_spectrum(pass) ? "#define SHARES_SPECTRUM\n" : "";
+  const char *shown = shows_receivers(pass) ? "#define SHOWN_RECEIVERS\n" : "";
+  snprintf(shares, sizeof shares, "%s%s", shown,
+           shares_spectrum(pass) ? "#define SHARES_SPECTRUM\n" : "");
   if (refines(pass))
     snprintf(facts, sizeof facts, "%s#define REFINES\n#define COARSE_BANDS %d\n", shares,
              COARSE_BANDS);
@@ -98,7 +106,7 @@ static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_v
     snprintf(facts, sizeof facts, "%s%s%s", shares,
              interleaves(pass) ? "#define INTERLEAVES\n" : "",
              pass->keeps ? "#define KEEPS_SIGHTS\n" : "");
-  if (is_coarse(pass)) snprintf(facts, sizeof facts, "#define COARSE_EYE\n");
+  if (is_coarse(pass)) snprintf(facts, sizeof facts, "%s#define COARSE_EYE\n", shown);
   snprintf(refined, sizeof refined, "%s#define REFINED\n", shares);
   abbe_result result =
       abbe_shader_variant_compute(&camera, gpu, "refraction.comp", facts, &pass->refract, error);
@@ -119,8 +127,11 @@ static abbe_result make_targets(abbe_refraction_pass *pass, abbe_error *error) {
   if (resolves(pass))
     result = abbe_gpu_make_texture(gpu, GL_RGBA32F, w, h, 0, false, &pass->colour, error);
   if (result != ABBE_OK || !plan->camera_sees_refractor) return result;
-  result = abbe_gpu_make_texture(gpu, GL_RGBA32F, w, h, plan->draw_back ? 2 : 1, false,
-                                 &pass->layers, error);
+  if (!resolves(pass) && shows_receivers(pass))
+    result = abbe_gpu_make_texture(gpu, GL_RGBA32F, w, h, 1, false, &pass->shown, error);
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_texture(gpu, GL_RGBA32F, w, h, plan->draw_back ? 2 : 1, false,
+                                   &pass->layers, error);
   if (result == ABBE_OK)
     result = abbe_gpu_make_texture(gpu, GL_R16UI, w, h, 0, false, &pass->owner, error);
   if (result == ABBE_OK)
@@ -198,7 +209,7 @@ abbe_result abbe_refraction_pass_make(const abbe_lighting *lighting,
 void abbe_refraction_pass_free(abbe_refraction_pass *pass) {
   if (pass->lighting == NULL) return;
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  GLuint textures[] = {pass->layers, pass->owner, pass->depth, pass->colour};
+  GLuint textures[] = {pass->layers, pass->owner, pass->depth, pass->colour, pass->shown};
   GLuint buffers[] = {pass->pixels, pass->refined_pixels, pass->merged, pass->sights,
                       pass->sight_pixels};
   abbe_gpu_drop_textures(gpu, sizeof textures / sizeof *textures, textures);
@@ -262,6 +273,8 @@ static void use(abbe_refraction_pass *pass, GLuint program) {
   abbe_lighting_use(pass->lighting, program);
   abbe_gpu_bind_array(gpu, program, "eye_layers", 4, pass->layers);
   abbe_gpu_bind_texture(gpu, program, "eye_owner", 6, pass->owner);
+  abbe_gpu_bind_array(gpu, program, "eye_receivers", UNIT_SEEN_RECEIVERS,
+                      pass->shown != 0 ? pass->shown : pass->receivers->colour);
   abbe_gpu_set_float(gpu, program, "share_limit", share_of(pass));
   abbe_gpu_set_float(gpu, program, "pixel_angle", angle);
   if (scene_of(pass)->plan->multi_refractor_paths)
@@ -385,12 +398,17 @@ static void look_up(abbe_refraction_pass *pass) {
 
 static abbe_result show_refractors(abbe_refraction_pass *pass, abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
+  const size_t *samples = pass->lighting->camera->samples;
   if (!pass->whole) list_pixels(pass);
   if (pass->keeps) {
     const abbe_result result = pass->whole ? ABBE_OK : find_sights(pass, error);
     if (result == ABBE_OK && !gpu->stopped) look_up(pass);
     return result;
   }
+  if (pass->shown != 0) /* what is looked up is not what is written over */
+    gpu->gl->CopyImageSubData(pass->receivers->colour, GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, pass->shown,
+                              GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, (GLsizei)samples[0],
+                              (GLsizei)samples[1], 1);
   if (refines(pass)) use(pass, pass->refract_refined);
   use(pass, pass->refract);
   gpu->gl->BindImageTexture(0, resolves(pass) ? pass->colour : pass->receivers->colour, 0, GL_FALSE,

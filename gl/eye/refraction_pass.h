@@ -28,6 +28,7 @@ typedef struct abbe_refraction_pass {
   GLuint list, refract, refract_refined; /* programs */
   GLuint layers, owner, depth;           /* front, and back where meshes end at it */
   GLuint colour; /* where samples are resolved; else refractors are written over receivers */
+  GLuint shown;  /* then: what receivers show, for rays to look up */
   GLuint pixels, refined_pixels; /* lists */
   GLuint merged;        /* list of pixels, where receivers have one sample for all of a pixel's */
   size_t pixel_threads; /* threads of a pixel */
