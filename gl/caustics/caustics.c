@@ -88,9 +88,9 @@ static abbe_result sort_hits(abbe_caustics *c, size_t light, bool tiles, map_fit
     result = abbe_gpu_tell(gpu, gpu->done, error); /* reading takes its time */
     if (result == ABBE_OK)
       result = abbe_trace_pass_read(&c->trace, light, first, &hit, &path, error);
-    if (result == ABBE_OK) abbe_map_fit_add(fit, c->atlas, hit, path, count);
+    if (result == ABBE_OK) abbe_map_fit_add(fit, c->atlas, hit, path, count, most);
     if (result == ABBE_OK && fits->kept != NULL && tiles)
-      abbe_map_fit_add(fits->kept, c->atlas, hit, path, count);
+      abbe_map_fit_add(fits->kept, c->atlas, hit, path, count, most);
     if (result == ABBE_OK && fit->part > 0 && tiles)
       result = abbe_receiver_atlas_sort(c->atlas, hit, path, count, fit->part, fits->beside, error);
     free(hit);

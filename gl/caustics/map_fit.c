@@ -167,22 +167,55 @@ static double part_of(const float *hit, size_t count) {
   return (double)most / (1 << 24);
 }
 
+/* Where a hit lies in the fit's window, if the view holds it at all. */
+static bool place_of(const abbe_map_fit *fit, const float hit[4], double out[3]) {
+  const double p[3] = {hit[0], hit[1], hit[2]};
+  return abbe_view_project(fit->view, p, out);
+}
+
+static void add_light(abbe_map_fit *fit, const double at[2], double parts) {
+  if (fmin(at[0], at[1]) < 0 || fmax(at[0], at[1]) > 1) fit->outside += parts;
+  fit->total += parts;
+  for (int axis = 0; axis < 2; axis++) {
+    const double bin = fmin(fmax(floor(at[axis] * ABBE_FIT_BINS), 0), ABBE_FIT_BINS - 1);
+    fit->bin[axis][(int)bin] += parts;
+  }
+}
+
+/* Evenly from a place to halfway to another, which the path's next wavelength reaches. */
+static void add_spectrum(abbe_map_fit *fit, const double from[2], const double to[2],
+                         double parts) {
+  enum { STEP = 16, MOST = 16 };
+  const double apart = 0.5 * fmax(fabs(to[0] - from[0]), fabs(to[1] - from[1])) * ABBE_FIT_BINS;
+  const int count = (int)fmin(fmax(ceil(apart / STEP), 1), MOST);
+  double given = 0;
+  for (int i = 0; i < count; i++) {
+    const double t = 0.5 * (i + 0.5) / count, upto = rint(parts * (i + 1) / count);
+    const double at[2] = {from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])};
+    add_light(fit, at, upto - given);
+    given = upto;
+  }
+}
+
 void abbe_map_fit_add(abbe_map_fit *fit, const abbe_receiver_atlas *atlas, const float *hit,
-                      const GLuint *path, size_t count) {
+                      const GLuint *path, size_t count, size_t stride) {
   if (fit->part == 0) fit->part = part_of(hit, count);
   if (!(fit->part > 0)) return;
   for (size_t i = 0; i < count; i++) {
-    const float *at = hit + 4 * i;
-    double p[3] = {at[0], at[1], at[2]}, uvz[3];
-    if (!(at[3] > 0) || abbe_receiver_atlas_holds(atlas, path[i])) continue;
-    const double parts = rint(at[3] / fit->part);
-    const bool before = abbe_view_project(fit->view, p, uvz);
-    if (!before || uvz[0] < 0 || uvz[0] > 1 || uvz[1] < 0 || uvz[1] > 1) fit->outside += parts;
-    if (!before) continue;
-    fit->total += parts;
-    for (int axis = 0; axis < 2; axis++) {
-      double bin = fmin(fmax(floor(uvz[axis] * ABBE_FIT_BINS), 0), ABBE_FIT_BINS - 1);
-      fit->bin[axis][(int)bin] += parts;
+    double at[3];
+    if (!(hit[4 * i + 3] > 0) || abbe_receiver_atlas_holds(atlas, path[i])) continue;
+    const double parts = rint(hit[4 * i + 3] / fit->part), half = floor(0.5 * parts);
+    if (!place_of(fit, hit + 4 * i, at)) {
+      fit->outside += parts;
+      continue;
+    }
+    for (int side = 0; side < 2; side++) {
+      const bool ends = side == 0 ? i % stride == 0 : (i + 1) % stride == 0;
+      const size_t next = ends ? i : side == 0 ? i - 1 : i + 1;
+      double to[3];
+      if (path[next] != path[i] || !(hit[4 * next + 3] > 0) || !place_of(fit, hit + 4 * next, to))
+        memcpy(to, at, sizeof to);
+      add_spectrum(fit, at, to, side == 0 ? half : parts - half);
     }
   }
 }

@@ -19,9 +19,10 @@ typedef struct abbe_map_fit {
   double bin[2][ABBE_FIT_BINS];
 } abbe_map_fit;
 
-/* Adds hits of the light's map, not those on tiles; [count][4], with their paths. */
+/* Adds hits of the light's map, not those on tiles; [count / stride][stride][4] by wavelength, with
+ * their paths. Light lies between the wavelengths of a path. */
 void abbe_map_fit_add(abbe_map_fit *fit, const abbe_receiver_atlas *atlas, const float *hit,
-                      const GLuint *path, size_t count);
+                      const GLuint *path, size_t count, size_t stride);
 /* The layout of the fit's view, wider by a share on each side. Where nothing was lit the layout
  * stays. */
 void abbe_map_fit_layout(const abbe_map_fit *fit, double wider, abbe_map_layout *layout);

@@ -142,7 +142,7 @@ Part part_of(ListedSplat s, Grid g, Cell c, vec2 off_y) {
   vec2 sides = max(vec2(wide, length(beside)) + abs(vec2(dot(axis, shift), dot(axis_beside, shift))), LEAST_SIDE);
   vec2 bounds = sides.x * abs(axis) + sides.y * abs(axis_beside);
   sides *= min(1.0, 1.0 / max(bounds.x, bounds.y));
-  vec2 box = clamp(abs(beside) + abs(across) + abs(shift), LEAST_SIDE, 1.0);
+  vec2 box = max(clamp(abs(beside) + abs(across) + abs(shift), LEAST_SIDE, 1.0), abs(shift));
   Part p;
   p.middle = s.centre + off_y + s.beside * ((c.beside + 0.5) / float(g.beside) - 0.5) +
              s.across * at_part + s.skew * abs(at_part) + s.shift * ((c.row + 0.5) * per_row - 0.5);

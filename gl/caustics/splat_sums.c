@@ -148,6 +148,7 @@ static shape shape_of(const splat *s, const grid *g, float sign, bool edges) {
     beside[k] = s->beside[k] / (float)g->beside / g->size;
     shift[k] = s->shift[k] / (float)g->along / g->size;
     box[k] = clamp(fabsf(beside[k]) + fabsf(across[k]) + fabsf(shift[k]), LEAST_SIDE, 1);
+    box[k] = most(box[k], fabsf(shift[k]));
   }
   if (edges)
     return (shape){.across = {0.5f * box[0], 0}, .beside = {0, 0.5f * box[1]}, .per_area = 1};

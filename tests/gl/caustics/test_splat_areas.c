@@ -1,6 +1,6 @@
 /* Splats on the map (photon_splat.comp, splat_sums.h): each lights the parallelogram that it stands
- * for, and side by side they make an even light, at every size, turn and place against the texels.
- * The device and the processor's threads add the same.
+ * for, and side by side they make an even light, at every size, turn, shift and place against the
+ * texels. The device and the processor's threads add the same.
  */
 #include "gl/caustics/splat_sums.h"
 #include "tests/gl/glsl.h"
@@ -12,6 +12,7 @@ enum { TEXELS = SIDE * SIDE / 3 * 4 };
 
 typedef struct splat {
   double at[2], across[2], narrow; /* texels; the side of a length square to `across` */
+  double shift;                    /* along x, from one colour to the next */
   int level;
 } splat;
 
@@ -34,6 +35,7 @@ static void pack(const splat *s, uint32_t word[WORDS]) {
   word[1] = (uint32_t)(s->at[1] * 32768) << 5 | (uint32_t)s->level;
   word[2] = halves(s->across[0], s->across[1]);
   for (int c = 0; c < 3; c++) word[3 + c] = UNITS;
+  word[9] = halves(s->shift, 0);
   word[11] = halves(s->narrow, 0);
 }
 
@@ -249,4 +251,26 @@ TEST(device_and_processor_add_the_same) {
     }
     assert_true(all > COUNT * (double)UNITS && apart < 2e-6 * all && more == 0);
   }
+}
+
+/* A thin line's spectrum: splats that are shifted each to where the next begins. */
+TEST(rows_leave_no_gaps) {
+  static splat splats[MOST];
+  double worst = 0;
+  for (int i = 0; i < 24; i++) {
+    const double shift = 0.5 * pow(4, i / 23.0);
+    size_t count = 0;
+    for (double x = 8; x < 120; x += shift) {
+      splats[count] = make(x, 64.3, 0.125, 0.125, 0);
+      splats[count++].shift = shift;
+    }
+    run(splats, count, true);
+    for (int x = 40; x < 88; x++) {
+      double light = 0;
+      for (int y = 60; y < 70; y++) light += sums[3 * (y * SIDE + x) + 1];
+      worst = fmax(worst, fabs(light / (UNITS / shift) - 1));
+    }
+  }
+  print_message("uneven by %g\n", worst);
+  if (!(worst < 0.12)) fail_msg("uneven by %g", worst);
 }
