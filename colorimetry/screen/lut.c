@@ -1,6 +1,7 @@
 #include "colorimetry/screen/lut.h"
 
 #include "base/file.h"
+#include "base/number.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -40,23 +41,34 @@ static abbe_result make_nodes(const abbe_lut_desc *desc, const shape *s, abbe_im
   return result == ABBE_OK ? abbe_display_apply(desc->display, out, error) : result;
 }
 
+/* To seven places, as the file's numbers are; what the locale says does not matter. */
+static void put(FILE *out, double value, const char *after) {
+  char text[ABBE_NUMBER_TEXT_SIZE];
+  fprintf(out, "%s%s", abbe_number_text(abbe_number_tidy(round(value * 1e7) / 1e7), text), after);
+}
+
+static void put_colour(FILE *out, const float v[3]) {
+  for (int c = 0; c < 3; c++) put(out, (double)v[c], c < 2 ? " " : "\n");
+}
+
 static void write_cube(const abbe_lut_desc *desc, const shape *s, const abbe_image *nodes,
                        FILE *out) {
   const double most = light_of(s, 1);
-  fprintf(out, "# %s to %s\n", desc->input, desc->output);
-  fprintf(out, "# Input: scene-linear %s, 0 to %.9g, full range; the shaper is a logarithm,\n",
-          desc->input, most);
-  fprintf(out, "# %g to %g stops from 0.18. Output: %s, full range.\n", desc->low, desc->high,
-          desc->output);
-  fprintf(out, "LUT_1D_SIZE %d\nLUT_1D_INPUT_RANGE 0 %.9g\n", SHAPER, most);
+  char text[ABBE_NUMBER_TEXT_SIZE];
+  fprintf(out, "# %s to %s\n# Input: scene-linear %s, 0 to ", desc->input, desc->output,
+          desc->input);
+  put(out, most, ", full range; the shaper is a logarithm,\n# ");
+  put(out, desc->low, " to ");
+  put(out, desc->high, " stops from 0.18. Output: ");
+  fprintf(out, "%s, full range.\nLUT_1D_SIZE %d\nLUT_1D_INPUT_RANGE 0 ", desc->output, SHAPER);
+  put(out, most, "\n");
   fprintf(out, "LUT_3D_SIZE %zu\nLUT_3D_INPUT_RANGE 0 1\n", desc->nodes);
   for (int i = 0; i < SHAPER; i++) {
-    const double y = shaped(s, most * i / (SHAPER - 1));
-    fprintf(out, "%.7f %.7f %.7f\n", y, y, y);
+    const char *y = abbe_number_text(
+        abbe_number_tidy(round(shaped(s, most * i / (SHAPER - 1)) * 1e7) / 1e7), text);
+    fprintf(out, "%s %s %s\n", y, y, y);
   }
-  for (size_t i = 0; i < nodes->width * nodes->height; i++)
-    fprintf(out, "%.7f %.7f %.7f\n", nodes->data[3 * i], nodes->data[3 * i + 1],
-            nodes->data[3 * i + 2]);
+  for (size_t i = 0; i < nodes->width * nodes->height; i++) put_colour(out, nodes->data + 3 * i);
 }
 
 static void write_text(const char *text, FILE *out) {
@@ -85,20 +97,22 @@ static void write_clf(const abbe_lut_desc *desc, const shape *s, const abbe_imag
   write_text(desc->input, out);
   fputs("</InputDescriptor>\n  <OutputDescriptor>", out);
   write_text(desc->output, out);
+  char text[3][ABBE_NUMBER_TEXT_SIZE];
+  fputs("</OutputDescriptor>\n"
+        "  <Log inBitDepth=\"32f\" outBitDepth=\"32f\" style=\"linToLog\">\n    <Description>",
+        out);
+  put(out, desc->low, " to ");
+  put(out, desc->high, " stops from 0.18</Description>\n");
   fprintf(out,
-          "</OutputDescriptor>\n"
-          "  <Log inBitDepth=\"32f\" outBitDepth=\"32f\" style=\"linToLog\">\n"
-          "    <Description>%g to %g stops from 0.18</Description>\n"
-          "    <LogParams base=\"2\" logSideSlope=\"%.12g\" logSideOffset=\"%.12g\" "
-          "linSideSlope=\"1\" linSideOffset=\"%.12g\"/>\n  </Log>\n"
+          "    <LogParams base=\"2\" logSideSlope=\"%s\" logSideOffset=\"%s\" "
+          "linSideSlope=\"1\" linSideOffset=\"%s\"/>\n  </Log>\n"
           "  <LUT3D inBitDepth=\"32f\" outBitDepth=\"32f\" interpolation=\"tetrahedral\">\n"
           "    <Array dim=\"%zu %zu %zu 3\">\n",
-          desc->low, desc->high, 1 / s->span, -log2(s->a) / s->span, s->a, n, n, n);
+          abbe_number_text(1 / s->span, text[0]), abbe_number_text(-log2(s->a) / s->span, text[1]),
+          abbe_number_text(s->a, text[2]), n, n, n);
   /* Blue runs first here. */
-  for (size_t i = 0; i < n * n * n; i++) {
-    const float *v = nodes->data + 3 * (i / n / n + i / n % n * n + i % n * n * n);
-    fprintf(out, "%.7f %.7f %.7f\n", v[0], v[1], v[2]);
-  }
+  for (size_t i = 0; i < n * n * n; i++)
+    put_colour(out, nodes->data + 3 * (i / n / n + i / n % n * n + i % n * n * n));
   fputs("    </Array>\n  </LUT3D>\n</ProcessList>\n", out);
 }
 
