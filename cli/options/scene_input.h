@@ -75,7 +75,8 @@ enum {
        ABBE_SCENE_INPUT_METAL,                                                                     \
        "NAME",                                                                                     \
        0,                                                                                          \
-       "of a ring or a setting: gold, silver, platinum, rhodium, palladium, green-gold … (gold)",  \
+       "of a ring or a setting: gold, silver, platinum, rhodium, palladium, gold-18k, "            \
+       "rose-gold-18k … (gold)",                                                                   \
        group},                                                                                     \
       {"width",                                                                                    \
        ABBE_SCENE_INPUT_WIDTH,                                                                     \

@@ -133,6 +133,16 @@ TEST(shipped_metals_reflect_what_their_sources_say) {
       {"rhodium", 590.4, 2.05, 5.30, 0.7807},       {"green-gold", 580, 0.31411, 3.34981, 0.9030},
       {"mercury", 563.56, 1.62088, 4.7505, 0.7797},
   };
+  /* alloys: percent of gold, silver and copper by mass */
+  static const struct {
+    const char *name;
+    double mass[3];
+  } alloys[] = {{"gold-22k", {91.7, 5.5, 2.8}},     {"gold-18k", {75, 16, 9}},
+                {"gold-14k", {58.5, 25, 16.5}},     {"gold-9k", {37.5, 42.5, 20}},
+                {"rose-gold-22k", {91.7, 0, 8.3}},  {"rose-gold-18k", {75, 2.75, 22.25}},
+                {"rose-gold-14k", {58.5, 9.5, 32}}, {"rose-gold-9k", {37.5, 20, 42.5}}};
+  static const char *const pure[] = {"gold", "silver", "copper"};
+  static const double atom[] = {196.967, 107.868, 63.546};
   abbe_material_table table = load_table("default");
   size_t metals = 0;
   for (size_t i = 0; i < table.count; i++) {
@@ -144,8 +154,22 @@ TEST(shipped_metals_reflect_what_their_sources_say) {
       assert_true(n > 0.01 && n < 4 && k > 1 && k < 9);
     }
   }
-  assert_int_equal(metals, sizeof rows / sizeof rows[0]);
-  for (size_t i = 0; i < metals; i++) {
+  const size_t published = sizeof rows / sizeof rows[0], mixed = sizeof alloys / sizeof alloys[0];
+  assert_int_equal(metals, published + mixed);
+  for (size_t i = 0; i < 3 * mixed; i++) {
+    const double l[] = {450.9, 548.6, 659.5}, *mass = alloys[i / 3].mass;
+    double n = 0, k = 0, real = 0, imaginary = 0, atoms = 0;
+    for (int m = 0; m < 3; m++) {
+      OK(abbe_material_nk(find_material(&table, pure[m]), l[i % 3], &n, &k, &error));
+      real += mass[m] / atom[m] * (n * n - k * k);
+      imaginary += mass[m] / atom[m] * 2 * n * k;
+      atoms += mass[m] / atom[m];
+    }
+    OK(abbe_material_nk(find_material(&table, alloys[i / 3].name), l[i % 3], &n, &k, &error));
+    assert_near(n * n - k * k, real / atoms, 0.01);
+    assert_near(2 * n * k, imaginary / atoms, 0.01);
+  }
+  for (size_t i = 0; i < published; i++) {
     double n = 0, k = 0;
     OK(abbe_material_nk(find_material(&table, rows[i].name), rows[i].nm, &n, &k, &error));
     assert_near(n, rows[i].n, 1e-12);
