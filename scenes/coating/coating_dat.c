@@ -12,6 +12,8 @@
 
 enum { MOST_BYTES = 1 << 24, MOST_WORDS = 12, MOST_POINTS = 4096, WORD = 64 };
 
+static const double most_index = 1000;
+
 /* A line of the file, cut into words; what comes behind ! is a remark. */
 typedef struct reading {
   const char *path, *at;
@@ -92,9 +94,11 @@ static abbe_result read_points(reading *r, abbe_coating_layer *out) {
                   "'%s' has k = %g, which would make light: this format has k below 0 for what "
                   "absorbs",
                   name, k[count]);
-    if (!(um > 0 && n[count] > 0))
-      return FAIL(r, ABBE_SCHEMA, "'%s' has the wavelength %g um and n = %g; both are above 0",
-                  name, um, n[count]);
+    if (!(um > 0 && n[count] > 0 && n[count] <= most_index && k[count] >= -most_index))
+      return FAIL(r, ABBE_SCHEMA,
+                  "'%s' has n = %g and k = %g at %g um; wavelength and n are above 0, n and -k at "
+                  "most %g",
+                  name, n[count], k[count], um, most_index);
     nm[count] = abbe_number_tidy(1000 * um);
     if (count > 0 && !(nm[count] > nm[count - 1]))
       return FAIL(r, ABBE_SCHEMA, "'%s' has %g um after %g um; wavelengths must rise", name, um,

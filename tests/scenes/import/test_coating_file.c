@@ -11,7 +11,8 @@
   "0.5 2 1\nTAPR RIM\nPT 0 1\nCOAT AR\nMGF2 0.25\nCOAT THICK\nMGF2 0.0996 1 0\nCHROME .01 1\n"     \
   "f2 0.1 1\nCOAT LOOP\nMGF2 .1 1 2\nCOAT TAPERED\nMGF2 .1 1 0 RIM\nCOAT LOST\nUNOBTANIUM .1 1\n"  \
   "COAT AMPLIFIES\nGAIN .1 1\nCOAT DEEP\nMGF2 5.1 1\nCOAT BROKEN\nMGF2 thin 1\nTABLE T\nANGL 0\n"  \
-  "WAVE 0.5 0.1 0.1 0.9 0.9\nIDEAL I 0.9 0.1\nCOAT NAUGHT\n"
+  "WAVE 0.5 0.1 0.1 0.9 0.9\nIDEAL I 0.9 0.1\nMATE HUGE\n0.5 1e300 0\nCOAT VAST\nHUGE .1 1\nCOAT " \
+  "NAUGHT\n"
 
 typedef struct folder {
   char path[64], file[96], zec[96];
@@ -156,6 +157,7 @@ TEST(coatings_that_cannot_be_are_refused) {
       {ABBE_UNSUPPORTED, FROM("TAPERED"), "taper 'RIM'"},
       {ABBE_NOT_FOUND, FROM("LOST"), "the material 'UNOBTANIUM'"},
       {ABBE_SCHEMA, FROM("AMPLIFIES"), "would make light"},
+      {ABBE_SCHEMA, FROM("VAST"), "n = 1e+300"},
       {ABBE_SCHEMA, FROM("DEEP"), "is 5100 nm thick"},
       {ABBE_PARSE, FROM("BROKEN"), "a layer is a material"},
       {ABBE_UNSUPPORTED, FROM("T"), "of the kind TABLE"},
