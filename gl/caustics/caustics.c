@@ -344,9 +344,9 @@ static abbe_result run_light(abbe_caustics *c, size_t light, abbe_error *error) 
   if (result != ABBE_OK) return result;
   c->measured[light] = true;
   abbe_gpu_start_lap(gpu);
-  abbe_spectral_map_resolve(c->map, light);
+  result = abbe_spectral_map_resolve(c->map, light, error);
   abbe_gpu_book_lap(gpu, ABBE_PASS_SPECTRAL_MAP);
-  return ABBE_OK;
+  return result;
 }
 
 /* To the grids of the next frame in the sequence. */

@@ -209,7 +209,7 @@ abbe_result abbe_spectral_map_make(const abbe_photon_lights *views,
   const size_t texels = (atlas->used ? 2 : 1) * views->map_texels;
   result = abbe_gpu_make_buffer(gpu, texels * abbe_photon_lights_map_words(views) * 4, NULL,
                                 &out->sums, error);
-  if (result == ABBE_OK)
+  if (result == ABBE_OK && (!gpu->software || atlas->used))
     result =
         abbe_shader_variant_compute(variant, gpu, "map_resolve.comp", NULL, &out->resolve, error);
   if (result == ABBE_OK) result = abbe_gpu_compute(gpu, "map_mip.comp", NULL, &out->mip, error);
@@ -268,6 +268,75 @@ static void resolve_layer(abbe_spectral_map *map, size_t light, size_t layer, si
     write_level(map, map->resolve, level, rows);
 }
 
+/* Flux of a texel's X, Y or Z in units of the sums. */
+static inline float units_at(const GLuint *sum, size_t i, bool wide) {
+  return wide ? (float)sum[2 * i + 1] * 4294967296.0f + (float)sum[2 * i] : (float)sum[i];
+}
+
+/* One level, as map_resolve.comp makes it, of those of side n; above: the coarser level, of rows of
+ * n / 2 texels. size: widths, heights, and 1 over what each spreads its light over. */
+static void resolve_level(const GLuint *sum, bool wide, float unit, size_t n, const float *size[4],
+                          const float *above, bool finest, float *out) {
+#pragma omp parallel for
+  for (size_t y = 0; y < n; y++) {
+    const size_t half = n / 2, nearer = y / 2;
+    const size_t other = y % 2 == 0 ? nearer - (y > 0) : nearer + (nearer + 1 < half);
+    for (size_t x = 0; x < n; x++) {
+      const size_t i = x / 2, k = x % 2 == 0 ? i - (x > 0) : i + (i + 1 < half);
+      const float area = size[0][x] * size[1][y];
+      const float scale = finest ? 1 / area : size[2][x] * size[3][y];
+      const float *a = above + 4 * (nearer * half), *b = above + 4 * (other * half);
+      float *to = out + 4 * (y * n + x);
+      for (size_t c = 0; c < 3; c++) {
+        float flux = units_at(sum, 3 * (y * n + x) + c, wide) * unit;
+        if (above != NULL)
+          flux += area * (0.75f * (0.75f * a[4 * i + c] + 0.25f * a[4 * k + c]) +
+                          0.25f * (0.75f * b[4 * i + c] + 0.25f * b[4 * k + c]));
+        to[c] = flux * scale;
+      }
+      to[3] = 1;
+    }
+  }
+}
+
+/* The finest level of a light's own map, on the processor's own threads, whose stores in images are
+ * pixel by pixel. */
+static abbe_result resolve_here(abbe_spectral_map *map, size_t light, abbe_error *error) {
+  const abbe_photon_lights *views = map->views;
+  const abbe_gl *gl = scene_of(map)->gpu->gl;
+  const size_t side = scene_of(map)->plan->desc.map_size;
+  const size_t words = abbe_photon_lights_map_words(views);
+  const float unit = (float)abbe_photon_lights_map_unit(views, light);
+  float *level_of[2] = {malloc(side * side * 16), malloc(side * side * 4 + 16)};
+  gl->BindBuffer(GL_COPY_READ_BUFFER, map->sums);
+  gl->BindBuffer(GL_COPY_WRITE_BUFFER, views->texel_sizes);
+  const GLuint *sum = gl->MapBufferRange(
+      GL_COPY_READ_BUFFER, 0, (GLsizeiptr)(views->map_texels * words * 4), GL_MAP_READ_BIT);
+  const float *sizes = gl->MapBufferRange(GL_COPY_WRITE_BUFFER, (GLintptr)(light * side * 32),
+                                          (GLsizeiptr)(side * 32), GL_MAP_READ_BIT);
+  const bool whole = level_of[0] != NULL && level_of[1] != NULL;
+  const float *above = NULL;
+  size_t end = views->map_texels;
+  for (size_t level = views->map_levels; level-- > 0 && whole && sum != NULL && sizes != NULL;) {
+    const size_t n = side >> level;
+    const float *size[4];
+    for (size_t k = 0; k < 4; k++) size[k] = sizes + 2 * (k * side + side - n);
+    end -= n * n;
+    resolve_level(sum + end * words, views->wide, unit, n, size, above, level == 0,
+                  level_of[level % 2]);
+    above = level_of[level % 2];
+  }
+  if (sum != NULL) gl->UnmapBuffer(GL_COPY_READ_BUFFER);
+  if (sizes != NULL) gl->UnmapBuffer(GL_COPY_WRITE_BUFFER);
+  gl->BindTexture(GL_TEXTURE_2D_ARRAY, map->texture);
+  if (above != NULL)
+    gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, (GLint)light, (GLsizei)side, (GLsizei)side, 1,
+                      GL_RGBA, GL_FLOAT, above);
+  for (int i = 0; i < 2; i++) free(level_of[i]);
+  return whole ? abbe_gl_check(gl, "the resolving of a map", error)
+               : abbe_error_set(error, ABBE_NO_MEMORY, "no memory to resolve the map");
+}
+
 /* What the camera sees of the map where its samples are farther apart than texels. */
 static void make_mips(abbe_spectral_map *map, size_t light, size_t layer, size_t rows) {
   use(map, map->mip, "map_levels", light, layer);
@@ -275,17 +344,22 @@ static void make_mips(abbe_spectral_map *map, size_t light, size_t layer, size_t
     write_level(map, map->mip, level, rows);
 }
 
-void abbe_spectral_map_resolve(abbe_spectral_map *map, size_t light) {
+abbe_result abbe_spectral_map_resolve(abbe_spectral_map *map, size_t light, abbe_error *error) {
   const size_t side = scene_of(map)->plan->desc.map_size;
   const abbe_receiver_tiles *tiles = &map->atlas->tiles[light];
-  resolve_layer(map, light, light, side);
+  abbe_result result = ABBE_OK;
+  if (scene_of(map)->gpu->software)
+    result = resolve_here(map, light, error);
+  else
+    resolve_layer(map, light, light, side);
   abbe_map_history_blend(map->history, map->texture, light, light, side);
   make_mips(map, light, light, side);
-  if (tiles->count == 0) return;
+  if (result != ABBE_OK || tiles->count == 0) return result;
   const size_t layer = map->atlas->layer[light];
   resolve_layer(map, light, layer, tiles->rows);
   abbe_map_history_blend(map->history, map->texture, light, layer, tiles->rows);
   make_mips(map, light, layer, tiles->rows);
+  return ABBE_OK;
 }
 
 abbe_result abbe_spectral_map_read_ledger(const abbe_spectral_map *map, size_t light,

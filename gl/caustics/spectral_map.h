@@ -91,8 +91,9 @@ abbe_result abbe_spectral_map_make(const abbe_photon_lights *views,
 void abbe_spectral_map_free(abbe_spectral_map *map);
 
 void abbe_spectral_map_clear(abbe_spectral_map *map);
-/* The light's sums to its layers' texels, in all levels, with the history's. */
-void abbe_spectral_map_resolve(abbe_spectral_map *map, size_t light);
+/* The light's sums to its layers' texels, in all levels, with the history's. ABBE_GL,
+ * ABBE_NO_MEMORY. */
+abbe_result abbe_spectral_map_resolve(abbe_spectral_map *map, size_t light, abbe_error *error);
 /* The texture, into the program that is in use. */
 void abbe_spectral_map_set(const abbe_spectral_map *map, GLuint program);
 
