@@ -10,6 +10,7 @@
 #include "base/report.h"
 #include "cli/base/rank_job.h"
 #include "cli/gem/gem_input.h"
+#include "colorimetry/image/image.h"
 #include "scenes/cuts/cut.h"
 #include "scenes/cuts/cut_polyhedron.h"
 #include "spectral/materials/material.h"
@@ -55,9 +56,28 @@ abbe_result abbe_gem_output_write(const char *path, const abbe_cut *cut,
 
 /* What `abbe gem report` says of a judgement: as text, CSV, JSON, pages, pictures. */
 
+/* What the page for a customer shows besides: the stone in more pixels, and another beside it. */
+typedef struct abbe_gem_report_page {
+  abbe_gem_view own, ideal; /* ideal.side 0: there is none */
+  char name[160];           /* the ideal's; "": the same facets at angles that return more light */
+  double crown_deg, pavilion_deg; /* its main angles */
+  bool is_best;                   /* no pair of angles does better than the design's */
+  abbe_image photo;               /* zeroed: a map stands in its place */
+} abbe_gem_report_page;
+
+/* photo: a PNG, or NULL. ideal: a design, whose angles become those of the stone's index; NULL:
+ * the angles of a brilliant for a round one, else those of 49 pairs that return most light. Errors
+ * as abbe_cut_file_read_stone, abbe_png_read and abbe_gem_optimum_find. */
+abbe_result abbe_gem_report_page_make(const abbe_gem_stone_input *input,
+                                      const abbe_gem_view_desc *view, const char *photo,
+                                      const char *ideal, abbe_gem_report_page *out,
+                                      abbe_error *error);
+void abbe_gem_report_page_free(abbe_gem_report_page *page);
+
 typedef struct abbe_gem_report_facts {
   const abbe_gem_stone_input *input;
   const abbe_gem_judgement *judgement;
+  const abbe_gem_report_page *page; /* or NULL */
   double head_deg, seconds;
 } abbe_gem_report_facts;
 
@@ -69,7 +89,11 @@ void abbe_gem_report_print(const abbe_gem_report_facts *facts);
 void abbe_gem_report_print_csv(const abbe_gem_report_facts *facts);
 abbe_result abbe_gem_report_print_json(const abbe_gem_report_facts *facts, abbe_error *error);
 
-/* To path, .pdf. */
+struct abbe_sheet;
+/* The first page. */
+abbe_result abbe_gem_report_page_put(struct abbe_sheet *sheet, const abbe_gem_report_facts *facts,
+                                     abbe_error *error);
+/* To path, .pdf; the facts have a page. */
 abbe_result abbe_gem_report_sheet(const char *path, const abbe_gem_report_facts *facts,
                                   abbe_error *error);
 /* maps.exr and a PNG for each map, into a folder that is there. */

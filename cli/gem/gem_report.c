@@ -12,6 +12,8 @@
 enum {
   KEY_CSV = 0x100,
   KEY_MAPS,
+  KEY_PICTURE,
+  KEY_IDEAL,
   KEY_HEAD,
   KEY_AXIS,
   KEY_TILT,
@@ -25,7 +27,7 @@ enum {
 
 typedef struct request {
   abbe_gem_stone_input stone;
-  const char *out, *maps;
+  const char *out, *maps, *picture, *ideal;
   double head_deg, tilt_deg, step_deg;
   size_t size, repeats, threads;
   bool csv;
@@ -36,6 +38,12 @@ static const struct argp_option options[] = {
     {"csv", KEY_CSV, NULL, 0, "all numbers as CSV", 0},
     {"maps", KEY_MAPS, "FOLDER", ABBE_ARGUMENT_ONCE,
      "maps.exr and a PNG of each map, into a folder that is there", 0},
+    {"picture", KEY_PICTURE, "FILE.png", ABBE_ARGUMENT_READS,
+     "of the stone, by abbe render, for the first page of -o; without it, its light return", 0},
+    {"ideal", KEY_IDEAL, "FILE", ABBE_ARGUMENT_READS,
+     "design that stands beside it on that page; without it, angles of an ideal round "
+     "brilliant, or those that return most light",
+     0},
     {"axis", KEY_AXIS, "X,Y,Z", 0,
      "the optic axis of a crystal in its cut, z up; of one of three indices six numbers, its axes "
      "z "
@@ -87,6 +95,12 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case KEY_CSV:
     q->csv = true;
     return 0;
+  case KEY_PICTURE:
+    q->picture = arg;
+    return 0;
+  case KEY_IDEAL:
+    q->ideal = arg;
+    return 0;
   case KEY_MAPS:
     q->maps = arg;
     return 0;
@@ -106,6 +120,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     state->child_inputs[0] = &q->stone.in;
     return 0;
   case ARGP_KEY_END:
+    if ((q->picture != NULL || q->ideal != NULL) && q->out == NULL)
+      argp_error(state, "--%s: on which page? Give -o FILE.pdf",
+                 q->picture != NULL ? "picture" : "ideal");
     if (q->stone.in.json && q->csv) argp_error(state, "--json and --csv: one of them");
     return 0;
   default:
@@ -155,6 +172,7 @@ static abbe_result check_targets(const request *q, abbe_error *error) {
 
 static abbe_result run(request *q, abbe_error *error) {
   abbe_gem_judgement judgement = {0};
+  abbe_gem_report_page page = {0};
   abbe_result result = check_targets(q, error);
   if (result == ABBE_OK) result = abbe_gem_stone_input_load(&q->stone, error);
   if (result == ABBE_OK) {
@@ -162,13 +180,17 @@ static abbe_result run(request *q, abbe_error *error) {
     abbe_progress_begin(&progress, "judging", q->stone.in.quiet);
     const abbe_gem_judgement_desc desc = describe(q, &progress);
     result = abbe_gem_judgement_make(&q->stone.stone, &q->stone.weights, &desc, &judgement, error);
+    if (result == ABBE_OK && q->out != NULL)
+      result = abbe_gem_report_page_make(&q->stone, &desc.view, q->picture, q->ideal, &page, error);
     const abbe_gem_report_facts facts = {.input = &q->stone,
+                                         .page = q->out != NULL ? &page : NULL,
                                          .judgement = &judgement,
                                          .head_deg = q->head_deg,
                                          .seconds = abbe_progress_seconds(&progress)};
     abbe_progress_end(&progress);
     if (result == ABBE_OK) result = say(q, &facts, error);
   }
+  abbe_gem_report_page_free(&page);
   abbe_gem_judgement_free(&judgement);
   abbe_gem_stone_input_free(&q->stone);
   return result;
@@ -187,6 +209,7 @@ int abbe_gem_report(int argc, char **argv) {
       "Examples:\n"
       "  abbe gem report brilliant.asc --material diamond\n"
       "  abbe gem report brilliant.asc --material quartz -o report.pdf --maps maps\n"
+      "  abbe gem report brilliant.asc --material ruby --width 6mm -o ruby.pdf --picture ruby.png\n"
       "  abbe gem report brilliant.asc --material diamond --head-shadow 10 --tilt 0 --json\n",
       children,
       NULL,

@@ -38,7 +38,7 @@ static abbe_result put_maps(abbe_sheet *s, const abbe_gem_report_facts *f, doubl
   for (int i = 0; i < ABBE_GEM_MAP_COUNT && result == ABBE_OK; i++) {
     const double x = MARGIN + each * (i % COLUMNS), top = y + (each + 14) * (i / COLUMNS);
     abbe_image image = {0};
-    result = abbe_gem_map_paint(&f->judgement->view, (abbe_gem_map)i, &image, error);
+    result = abbe_gem_map_paint(&f->page->own, (abbe_gem_map)i, &image, error);
     if (result == ABBE_OK)
       result = abbe_sheet_picture(s, x + 4, top + 12, each - 8, each - 8, &image, error);
     abbe_sheet_text(s, x + 4, top + 8, 8, false, false, 0.3, abbe_gem_map_text((abbe_gem_map)i));
@@ -111,6 +111,8 @@ abbe_result abbe_gem_report_sheet(const char *path, const abbe_gem_report_facts 
   abbe_result result = abbe_sheet_make(path, &s, error);
   if (result != ABBE_OK) return result;
   char text[400];
+  result = abbe_gem_report_page_put(s, f, error);
+  abbe_sheet_turn(s);
   snprintf(text, sizeof text, "%s in %s", abbe_gem_input_title(&f->input->in),
            f->input->in.material->name);
   abbe_sheet_text(s, MARGIN, MARGIN + 12, 17, true, false, 0, text);
@@ -121,7 +123,7 @@ abbe_result abbe_gem_report_sheet(const char *path, const abbe_gem_report_facts 
            f->head_deg, f->judgement->view.wavelengths,
            f->judgement->is_crystal ? "; both waves of the crystal" : "");
   abbe_sheet_text(s, MARGIN, MARGIN + 36, 8, false, false, 0.35, text);
-  result = put_maps(s, f, MARGIN + 46, error);
+  if (result == ABBE_OK) result = put_maps(s, f, MARGIN + 46, error);
   put_numbers(s, f, MARGIN + 46 + 2 * 184 + 22);
   abbe_sheet_text(s, MARGIN, ABBE_SHEET_A4_HEIGHT - MARGIN + 12, 7, false, false, 0.5,
                   "Definitions and sources: docs/gem-measures.md of Abbe");

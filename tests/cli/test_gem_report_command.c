@@ -81,6 +81,30 @@ TEST(pages_maps_and_tables) {
 
 #define BRILLIANT " \"$house\"/scenes/designs/brilliant-quartz.asc --quiet "
 
+/* The first page is for who buys the stone: with a design beside it that is named, that is shipped,
+ * or that has other angles, and with a picture. Its words are packed in the file. */
+TEST(a_page_for_a_customer) {
+  static const struct {
+    const char *line;
+    int pages;
+  } made[] = {{GEM "report" BRILLIANT "--material quartz --size 12 --wavelengths 2 --tilt 0 "
+                   "--maps . -o p.pdf && " GEM "report" BRILLIANT
+                   "--material quartz --size 12 --wavelengths 2 --tilt 0 --picture aset.png "
+                   "--ideal \"$house\"/scenes/designs/oval.asc -o p.pdf",
+               2},
+              {GEM "report \"$house\"/scenes/designs/rose.asc -q --material ruby --size 12 "
+                   "--wavelengths 2 --tilt 4 -o p.pdf",
+               3}};
+  for (int i = 0; i < 2; i++) {
+    char count[200];
+    run_says(made[i].line, "light return");
+    snprintf(count, sizeof count, "test $(grep -acE '/Type /Page( |$)' p.pdf) = %d", made[i].pages);
+    run_must(count);
+  }
+  run_must("rm p.pdf *.png maps.exr");
+  assert_int_equal(run_left(), 0);
+}
+
 TEST(crystals_lie_in_their_cut) {
   cJSON *json =
       run_json(GEM "report" BRILLIANT
@@ -153,6 +177,9 @@ TEST(what_is_refused) {
       {GEM "report" DIAMOND SMALL "--json --csv", "one of them", 2},
       {GEM "report" DIAMOND SMALL "--head-shadow 45", "--head-shadow", 2},
       {GEM "report" DIAMOND SMALL "-o r.png", ".pdf", 2},
+      {GEM "report" DIAMOND SMALL "--picture a.png", "on which page?", 2},
+      {GEM "report" DIAMOND SMALL "--tilt 0 --ideal none.asc -o r.pdf", "none.asc", 1},
+      {GEM "report" DIAMOND SMALL "--tilt 0 --picture none.png -o r.pdf", "none.png", 1},
       {GEM "report" DIAMOND SMALL "--tilt 0 --maps none", "none/", 1},
       {GEM "report" DIAMOND "--material silver", "is a metal", 1},
       {GEM "optimise" DIAMOND "--material diamond --measure fire",

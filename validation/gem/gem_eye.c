@@ -38,5 +38,7 @@ uint32_t abbe_gem_eye_place(size_t side, size_t column, size_t row, size_t repea
   abbe_random_bits((uint32_t)column, (uint32_t)row, (uint32_t)side, (uint32_t)repeat, bits);
   *u = (double)abbe_random_float(bits[0]);
   *v = (double)abbe_random_float(bits[1]);
-  return bits[2];
+  /* of a pixel's repeats, so that its first choices are spread evenly [Roberts2018] */
+  abbe_random_bits((uint32_t)column, (uint32_t)row, (uint32_t)side, 0, bits);
+  return bits[2] + (uint32_t)repeat * 2654435769u;
 }

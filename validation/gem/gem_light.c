@@ -120,8 +120,9 @@ static meeting meet(const abbe_gem_stone *s, size_t k, int face, const float n[3
                     uint8_t wave, uint32_t seed) {
   float chance[4];
   if (!abbe_media_is_crystal(&s->media, 0)) return meet_glass(s, k, face > 0, n, d);
+  if (face == 0) return meet_crystal(s, k, false, n, d, wave, abbe_random_float(seed));
   abbe_random4(seed, (uint32_t)face, 0, 0, chance);
-  return meet_crystal(s, k, face > 0, n, d, wave, chance[0]);
+  return meet_crystal(s, k, true, n, d, wave, chance[0]);
 }
 
 void abbe_gem_path_follow(const abbe_gem_stone *s, size_t k, const double p0[3], const double n0[3],

@@ -22,23 +22,27 @@ typedef struct work {
   const abbe_gem_optimum_desc *desc;
 } work;
 
-static abbe_result judge(const work *w, const abbe_cut *cut, abbe_gem_number *out,
-                         abbe_error *error) {
+static abbe_result make_stone(const work *w, const abbe_cut *cut, abbe_gem_stone *out,
+                              abbe_error *error) {
   abbe_cut_polyhedron p = {0};
-  abbe_gem_stone stone = {0};
-  abbe_gem_view view = {0};
   abbe_result result = abbe_cut_polyhedron_make(cut, 0, &p, error);
   if (result == ABBE_OK)
     result =
-        abbe_gem_stone_make(cut, &p, w->material, w->wavelengths, w->desc->width_m, &stone, error);
+        abbe_gem_stone_make(cut, &p, w->material, w->wavelengths, w->desc->width_m, out, error);
   if (result == ABBE_OK && abbe_vector_length(w->desc->axes.z) > 0)
-    result = abbe_gem_stone_turn(&stone, &w->desc->axes, error);
-  if (result == ABBE_OK)
-    result = abbe_gem_view_make(&stone, w->weights, &w->desc->view, &view, error);
+    result = abbe_gem_stone_turn(out, &w->desc->axes, error);
+  abbe_cut_polyhedron_free(&p);
+  return result;
+}
+
+/* Frees the stone. */
+static abbe_result judge(const work *w, abbe_gem_stone *stone, abbe_gem_number *out,
+                         abbe_error *error) {
+  abbe_gem_view view = {0};
+  const abbe_result result = abbe_gem_view_make(stone, w->weights, &w->desc->view, &view, error);
   if (result == ABBE_OK) *out = abbe_gem_view_amount(&view, w->desc->measure);
   abbe_gem_view_free(&view);
-  abbe_gem_stone_free(&stone);
-  abbe_cut_polyhedron_free(&p);
+  abbe_gem_stone_free(stone);
   return result;
 }
 
@@ -59,9 +63,9 @@ abbe_result abbe_gem_optimum_apply(const abbe_gem_optimum *o, abbe_cut *cut,
 }
 
 /* The planes are the copy's own; names and texts are the design's. */
-static abbe_result try_pair(const work *w, const abbe_cut *cut, const abbe_cut_polyhedron *p,
-                            const abbe_gem_optimum *o, size_t i, abbe_gem_number *out,
-                            abbe_error *error) {
+static abbe_result make_pair(const work *w, const abbe_cut *cut, const abbe_cut_polyhedron *p,
+                             const abbe_gem_optimum *o, size_t i, abbe_gem_stone *out,
+                             abbe_error *error) {
   abbe_cut own = *cut;
   own.tier = malloc(cut->tier_count * sizeof *own.tier);
   own.facet = malloc(cut->facet_count * sizeof *own.facet);
@@ -74,10 +78,19 @@ static abbe_result try_pair(const work *w, const abbe_cut *cut, const abbe_cut_p
     memcpy(own.facet, cut->facet, cut->facet_count * sizeof *own.facet);
     result = abbe_gem_optimum_apply(o, &own, p, i, error);
   }
-  if (result == ABBE_OK) result = judge(w, &own, out, error);
+  if (result == ABBE_OK) result = make_stone(w, &own, out, error);
   free(own.tier);
   free(own.facet);
   return result;
+}
+
+abbe_result abbe_gem_optimum_stone(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
+                                   const abbe_material *material,
+                                   const abbe_wavelengths *wavelengths,
+                                   const abbe_gem_optimum_desc *desc, const abbe_gem_optimum *o,
+                                   abbe_gem_stone *out, abbe_error *error) {
+  const work w = {material, wavelengths, NULL, desc};
+  return make_pair(&w, cut, polyhedron, o, o->best, out, error);
 }
 
 static abbe_result check(const abbe_gem_optimum_desc *d, abbe_error *error) {
@@ -154,7 +167,9 @@ abbe_result abbe_gem_optimum_begin(const abbe_cut *cut, const abbe_cut_polyhedro
   const work w = {material, wavelengths, weights, desc};
   abbe_result result = check(desc, error);
   if (result == ABBE_OK) result = make_grid(cut, polyhedron, desc, out, error);
-  if (result == ABBE_OK) result = judge(&w, cut, &out->design, error);
+  abbe_gem_stone stone = {0};
+  if (result == ABBE_OK) result = make_stone(&w, cut, &stone, error);
+  if (result == ABBE_OK) result = judge(&w, &stone, &out->design, error);
   if (result != ABBE_OK) abbe_gem_optimum_free(out);
   return result;
 }
@@ -167,7 +182,9 @@ abbe_result abbe_gem_optimum_judge(const abbe_cut *cut, const abbe_cut_polyhedro
   const work w = {material, wavelengths, weights, desc};
   abbe_gem_number value;
   abbe_result result = check_pair(optimum, i, error);
-  if (result == ABBE_OK) result = try_pair(&w, cut, polyhedron, optimum, i, &value, error);
+  abbe_gem_stone stone = {0};
+  if (result == ABBE_OK) result = make_pair(&w, cut, polyhedron, optimum, i, &stone, error);
+  if (result == ABBE_OK) result = judge(&w, &stone, &value, error);
   if (result == ABBE_OK) abbe_gem_optimum_know(optimum, i, value);
   return result;
 }

@@ -75,4 +75,12 @@ abbe_result abbe_gem_optimum_apply(const abbe_gem_optimum *optimum, abbe_cut *cu
                                    const abbe_cut_polyhedron *polyhedron, size_t i,
                                    abbe_error *error);
 
+/* The stone at the best angles, of other wavelengths if need be. */
+abbe_result abbe_gem_optimum_stone(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
+                                   const abbe_material *material,
+                                   const abbe_wavelengths *wavelengths,
+                                   const abbe_gem_optimum_desc *desc,
+                                   const abbe_gem_optimum *optimum, abbe_gem_stone *out,
+                                   abbe_error *error);
+
 #endif
