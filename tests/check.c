@@ -41,6 +41,18 @@ void check_refusal(abbe_result code, const char *words, abbe_result result, cons
   _fail(file, line);
 }
 
+const char *printed(const char *format, ...) {
+  static char text[64][8192];
+  static size_t next;
+  char *out = text[next++ % 64];
+  va_list values;
+  va_start(values, format);
+  const int size = vsnprintf(out, sizeof text[0], format, values);
+  va_end(values);
+  assert_true(size >= 0 && (size_t)size < sizeof text[0]);
+  return out;
+}
+
 static void call(void (*function)(void)) {
   if (function != NULL) function();
 }
@@ -73,9 +85,15 @@ static int after(void **state) {
   return 0;
 }
 
-static bool is_wanted(const check_test *test, int count, char **parts) {
+static bool is_wanted(const check_test *test, size_t number, int count, char **parts) {
   bool wanted = count == 0;
-  for (int i = 0; i < count; i++) wanted |= strstr(test->name, parts[i]) != NULL;
+  for (int i = 0; i < count; i++) {
+    size_t share, of;
+    if (sscanf(parts[i], "%zu/%zu", &share, &of) == 2)
+      wanted |= of > 0 && number % of == share % of;
+    else
+      wanted |= strstr(test->name, parts[i]) != NULL;
+  }
   return wanted;
 }
 
@@ -86,10 +104,10 @@ static int list(void) {
 
 int main(int count, char **argument) {
   static struct CMUnitTest tests[200];
-  size_t n = 0;
+  size_t n = 0, number = 0;
   if (count == 2 && strcmp(argument[1], "--list") == 0) return list();
   for (check_test *test = first; test != NULL; test = test->next) {
-    if (!is_wanted(test, count - 1, argument + 1)) continue;
+    if (!is_wanted(test, number++, count - 1, argument + 1)) continue;
     if (n == sizeof tests / sizeof *tests) return fputs("too many tests\n", stderr), 2;
     tests[n++] = (struct CMUnitTest){test->name, run, before, after, test};
   }

@@ -1,6 +1,7 @@
 /* check.h: what the tests share: cmocka's includes in order, tests that register themselves, and
  * comparisons that say the values. tests/check.c runs the tests of a program in the order in which
- * they stand: `test_NAME [PART…]`, `test_NAME --list`. */
+ * they stand: `test_NAME [PART…]`, `test_NAME --list`. A part is of a name, or K/N: every N-th
+ * test. */
 #ifndef ABBE_TESTS_CHECK_H
 #define ABBE_TESTS_CHECK_H
 
@@ -37,6 +38,10 @@ static inline bool all_cases(void) {
 #ifndef assert_int_in_range
 #define assert_int_in_range assert_in_range
 #endif
+
+/* The braces of a row or of a struct's fields, which so may share a line. */
+#define FIELDS(...)                                                                                \
+  { __VA_ARGS__ }
 
 typedef struct check_test {
   const char *name;
@@ -90,12 +95,30 @@ void check_refusal(abbe_result code, const char *words, abbe_result result, cons
                    const char *call, const char *file, int line);
 
 /* OWNED(type, name) is a local of which type_free is called where its block ends, and so is free()
- * of a FREED pointer; not after a failure. */
+ * of a FREED pointer; HELD(type, name) is a pointer to what type_free frees there, of a type that
+ * HOLDS(type) names. Not after a failure. */
 #define OWNED(type, name) __attribute__((cleanup(type##_free))) type name
+#define HOLDS(type)                                                                                \
+  static inline void type##_drop(type **held) {                                                    \
+    type##_free(*held);                                                                            \
+  }                                                                                                \
+  struct check_test
+#define HELD(type, name) __attribute__((cleanup(type##_drop))) type *name
 #define FREED __attribute__((cleanup(check_free)))
 static inline void check_free(void *pointer) {
   free(*(void **)pointer);
 }
+
+/* An OWNED local that the call makes: MADE's call may fail, as OK's; FILLED's returns nothing. */
+#define MADE(type, name, ...)                                                                      \
+  OWNED(type, name) = {0};                                                                         \
+  OK(__VA_ARGS__)
+#define FILLED(type, name, ...)                                                                    \
+  OWNED(type, name) = {0};                                                                         \
+  __VA_ARGS__
+
+/* The text of a format, below 8 KiB; it stays for 63 more. */
+const char *printed(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* |a - b| <= tolerance; a NaN on either side fails. */
 #define assert_near(a, b, tolerance) check_near(a, b, tolerance, #a, __FILE__, __LINE__)

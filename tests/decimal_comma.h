@@ -20,10 +20,9 @@ static inline bool comma_is_there(void) {
 
 /* Of a group of tests: they fail where there is no such locale and localedef makes none. */
 static void comma_setup(void) {
-  char command[200];
   assert_non_null(mkdtemp(comma_folder));
   if (comma_is_there()) return;
-  snprintf(command, sizeof command, "localedef -i de_DE -f UTF-8 %s/" COMMA, comma_folder);
+  const char *command = printed("localedef -i de_DE -f UTF-8 %s/" COMMA, comma_folder);
   if (system(command) != 0 || setenv("LOCPATH", comma_folder, 1) != 0 || !comma_is_there()) {
     print_error("there is no locale " COMMA " and localedef (package locales) makes none\n");
     fail();
@@ -31,10 +30,8 @@ static void comma_setup(void) {
 }
 
 static void comma_teardown(void) {
-  char command[200];
   setlocale(LC_ALL, "C");
-  snprintf(command, sizeof command, "rm -r %s", comma_folder);
-  assert_false(system(command));
+  assert_false(system(printed("rm -r %s", comma_folder)));
 }
 
 #endif

@@ -54,13 +54,12 @@ static void assert_holds(const char *path, const char *text) {
 GROUP(make_folder, empty_folder);
 
 TEST(what_is_written_is_read) {
-  char *data = NULL;
+  FREED char *data = NULL;
   size_t size = 0;
   OK(abbe_file_write(in_folder("a"), "x\0y", 3, &error));
   OK(abbe_file_read(in_folder("a"), 3, &data, &size, &error));
   assert_int_equal(size, 3);
   assert_memory_equal(data, "x\0y", 4);
-  free(data);
   OK(abbe_file_write(in_folder("a"), "", 0, &error));
   assert_holds(in_folder("a"), "");
   assert_int_equal(entries(), 1);
@@ -114,10 +113,10 @@ int __wrap_poll(struct pollfd *one, nfds_t count, int milliseconds) {
 /* As a shell's <(...) is one. */
 TEST(a_nameless_pipe_is_read_while_it_brings_something) {
   int end[2];
-  char path[64], *data = NULL;
+  char *data = NULL;
   size_t size = 0;
   assert_int_equal(pipe(end), 0);
-  snprintf(path, sizeof path, "/dev/fd/%d", end[0]);
+  const char *path = printed("/dev/fd/%d", end[0]);
   assert_int_equal(write(end[1], "text", 4), 4);
   nothing_comes = true;
   REFUSED(ABBE_IO, "", abbe_file_read(path, 100, &data, &size, &error));
@@ -205,7 +204,7 @@ TEST(a_name_as_long_as_names_can_be_works) {
 /* A file-size limit fails a write as a full disk does. */
 TEST(a_full_disk_leaves_the_old_file) {
   enum { SIZE = 1 << 20 };
-  char *big = calloc(1, SIZE);
+  FREED char *big = calloc(1, SIZE);
   assert_non_null(big);
   OK(abbe_file_write(in_folder("kept"), "old", 3, &error));
   int before = entries();
@@ -220,7 +219,6 @@ TEST(a_full_disk_leaves_the_old_file) {
   /* small enough for the stream's buffer: the failure shows at commit only */
   abbe_result buffered = abbe_file_write(in_folder("kept"), big, 4097, NULL);
   setrlimit(RLIMIT_FSIZE, &limit);
-  free(big);
   assert_int_equal(result, ABBE_IO);
   assert_int_equal(buffered, ABBE_IO);
   assert_contains(why.text, "kept");

@@ -40,7 +40,8 @@ static void make_file(const char *name, const char *text) {
 }
 
 static void note_file(FILE *to, const char *name) {
-  char path[300], *data = NULL;
+  char path[300];
+  FREED char *data = NULL;
   size_t size = 0;
   in_folder(name, path);
   OK(abbe_file_read(path, 1 << 26, &data, &size, &error));
@@ -52,7 +53,6 @@ static void note_file(FILE *to, const char *name) {
   fprintf(to, "%s:\n", name);
   fwrite(data, 1, size, to);
   fputc('\n', to);
-  free(data);
 }
 
 static void note_image(FILE *to, const char *what, const abbe_image *image) {
@@ -67,19 +67,15 @@ static void note_image(FILE *to, const char *what, const abbe_image *image) {
 static void with_materials(FILE *to) {
   static const char *const sets[] = {"default", "thesis"};
   for (int t = 0; t < 2; t++) {
-    OWNED(abbe_material_table, table) = {0};
-    OWNED(abbe_material_table, known) = {0};
-    OWNED(abbe_report, report) = {0};
-    OWNED(abbe_findings, findings) = {0};
-    OK(abbe_material_table_load(sets[t], &table, &error));
-    OK(abbe_material_table_load("default", &known, &error));
+    MADE(abbe_material_table, table, abbe_material_table_load(sets[t], &table, &error));
+    MADE(abbe_material_table, known, abbe_material_table_load("default", &known, &error));
     OK(abbe_material_table_write(&table, to, &error));
-    OK(abbe_agf_write(&table, to, &report, &error));
+    MADE(abbe_report, report, abbe_agf_write(&table, to, &report, &error));
     const abbe_csv_sampling sampling = {450, 525, 12.5};
     OK(abbe_csv_write(&table.material[1], &sampling, to, &report, &error));
     OK(abbe_rii_write(&table.material[1], to, &report, &error));
     for (size_t i = 0; i < report.count; i++) fprintf(to, "%s\n", report.note[i].text);
-    OK(abbe_check_table(&table, &known, &findings, &error));
+    MADE(abbe_findings, findings, abbe_check_table(&table, &known, &findings, &error));
     for (size_t i = 0; i < findings.count; i++)
       fprintf(to, "%s %s %s\n", findings.finding[i].evidence,
               findings.finding[i].fix ? findings.finding[i].fix : "",
@@ -99,11 +95,11 @@ static void with_imports(FILE *to) {
        "    coefficients: 0 1.03961212 0.0775 0.231792344 0.1415 1.01046945 10.176\n"}};
   for (int i = 0; i < 3; i++) {
     char path[300];
-    OWNED(abbe_material_table, table) = {0};
     OWNED(abbe_report, report) = {0};
     in_folder(files[i][0], path);
     make_file(files[i][0], files[i][1]);
-    OK(abbe_import_load(path, &(abbe_import_options){0}, &table, &report, &error));
+    MADE(abbe_material_table, table,
+         abbe_import_load(path, &(abbe_import_options){0}, &table, &report, &error));
     OK(abbe_material_table_write(&table, to, &error));
     for (size_t k = 0; k < report.count; k++) fprintf(to, "%s\n", report.note[k].text);
   }
@@ -114,10 +110,9 @@ static void with_illuminants(FILE *to) {
                                          {"point.csv", "400.5 0.25\n500.5 0.5\n700.5 7.5e-1\n"}};
   for (int i = 0; i < 2; i++) {
     char path[300];
-    OWNED(abbe_illuminant, light);
     in_folder(files[i][0], path);
     make_file(files[i][0], files[i][1]);
-    OK(abbe_illuminant_make(path, &light, &error));
+    MADE(abbe_illuminant, light, abbe_illuminant_make(path, &light, &error));
     const double power[2] = {abbe_illuminant_power(&light, 500.5),
                              abbe_illuminant_power(&light, 450)};
     note(to, files[i][0], power, sizeof power);
@@ -127,43 +122,34 @@ static void with_illuminants(FILE *to) {
 
 static void with_pictures(FILE *to) {
   static const char *const names[] = {"R", "G", "B"};
-  abbe_image image = {0}, back = {0};
-  abbe_view view = {.forward = {0, 0, -1},
-                    .right = {1, 0, 0},
-                    .up = {0, 1, 0},
-                    .origin = {0.1, -0.2, 0.3},
-                    .window = {-0.5, 0.5, -0.25, 0.75},
-                    .near = 0.125,
-                    .far = 2.5};
+  abbe_view view =
+      FIELDS(.forward = {0, 0, -1}, .right = {1, 0, 0}, .up = {0, 1, 0}, .origin = {0.1, -0.2, 0.3},
+             .window = {-0.5, 0.5, -0.25, 0.75}, .near = 0.125, .far = 2.5);
   abbe_map_layout layout;
   char path[300], band[40];
   in_folder("half.exr", path);
   abbe_image_band_name(550.25, band, sizeof band);
   fprintf(to, "%s\n", band);
   assert_string_equal(band, "S0.550,250000nm"); /* [Fichet2021] */
-  OK(abbe_image_make(2, 2, 3, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(2, 2, 3, names, &image, &error));
   for (int i = 0; i < 12; i++) image.data[i] = 1e-5f * (float)(i + 1);
   abbe_map_layout_make(&view, &layout);
   OK(abbe_map_layout_write(&layout, "lamp", &image, &error));
   OK(abbe_image_set_attribute(&image, "abbe:passes", "16", &error));
   OK(abbe_exr_write_half(path, &image, &error));
   note_file(to, "half.exr");
-  OK(abbe_exr_read(path, &back, &error));
+  MADE(abbe_image, back, abbe_exr_read(path, &back, &error));
   note_image(to, "back", &back);
   OK(abbe_map_layout_read(&back, path, &layout, &error));
   note(to, "layout", &layout, sizeof layout);
-  abbe_field field;
-  OK(abbe_field_make(&back, path, &field, &error));
+  MADE(abbe_field, field, abbe_field_make(&back, path, &field, &error));
   fprintf(to, "%zu passes\n", field.passes);
-  abbe_field_free(&field);
-  abbe_image_free(&back);
   abbe_display *display = NULL;
   OK(abbe_display_make(&(abbe_display_desc){.exposure = 12.5}, &display, &error));
   OK(abbe_display_apply(display, &image, &error));
   note_image(to, "displayed", &image);
   note(to, "xy", image.xy, sizeof image.xy);
   abbe_display_free(display);
-  abbe_image_free(&image);
 }
 
 static void with_charts(FILE *to) {
@@ -192,21 +178,20 @@ static void with_meshes(FILE *to) {
                 "endloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 0.125 0 0\n"
                 "vertex 0 0.25 0\nvertex 0 0 0.375\nendloop\nendfacet\nendsolid x\n"},
       {"a.gltf",
-       "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"data:application/octet-stream;"
-       "base64,AAAAAAAAAAAAAAAAAAAAPgAAAAAAAAAAAAAAAAAAgD4AAAAAAAAAAAAAAAAAAMA+"
+       "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"data:application/"
+       "octet-stream;base64,AAAAAAAAAAAAAAAAAAAAPgAAAAAAAAAAAAAAAAAAgD4AAAAAAAAAAAAAAAAAAMA+"
        "AAACAAEAAAABAAMAAAADAAIAAQACAAMA\",\"byteLength\":72}],\"bufferViews\":[{\"buffer\":0,"
-       "\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":24}],\"accessors\":["
-       "{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"min\":[0,0,0],"
-       "\"max\":[0.125,0.25,0.375]},{\"bufferView\":1,\"componentType\":5123,\"count\":12,"
-       "\"type\":\"SCALAR\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},"
-       "\"indices\":1}]}],\"nodes\":[{\"mesh\":0,\"scale\":[1.5,1.5,1.5]}],\"scenes\":[{"
-       "\"nodes\":[0]}],\"scene\":0}"}};
+       "\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":24}],\"accessors\":[{"
+       "\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"min\":[0,0,0],"
+       "\"max\":[0.125,0.25,0.375]},{\"bufferView\":1,\"componentType\":5123,\"count\":12,\"type\":"
+       "\"SCALAR\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}"
+       "],\"nodes\":[{\"mesh\":0,\"scale\":[1.5,1.5,1.5]}],\"scenes\":[{\"nodes\":[0]}],\"scene\":"
+       "0}"}};
   for (int i = 0; i < 4; i++) {
     char path[300];
-    OWNED(abbe_mesh, mesh) = {0};
     in_folder(files[i][0], path);
     make_file(files[i][0], files[i][1]);
-    OK(abbe_mesh_load(path, ABBE_NORMALS_FLAT, &mesh, NULL, &error));
+    MADE(abbe_mesh, mesh, abbe_mesh_load(path, ABBE_NORMALS_FLAT, &mesh, NULL, &error));
     double most = 0;
     for (size_t v = 0; v < mesh.vertex_count; v++) most = fmax(most, mesh.position[v][2]);
     assert_near(most, 0.375, 1e-6); /* of glTF, y is up: 0.25, scaled */
@@ -215,52 +200,45 @@ static void with_meshes(FILE *to) {
 }
 
 static void with_scenes(FILE *to) {
-  OWNED(abbe_scene, scene);
-  abbe_plan plan;
   char path[300];
-  load_shipped("gem", &scene);
+  OWNED(abbe_scene, scene) = shipped_scene("gem");
   note(to, "eye", scene.camera.eye, sizeof scene.camera.eye);
-  OK(abbe_plan_make(&scene, NULL, &plan, &error));
+  MADE(abbe_plan, plan, abbe_plan_make(&scene, NULL, &plan, &error));
   for (size_t i = 0; i < plan.entry_count; i++)
     fprintf(to, "%s: %s\n", plan.entry[i].name, plan.entry[i].reason);
   for (size_t i = 0; i < plan.note_count; i++) fprintf(to, "%s\n", plan.note[i]);
-  abbe_plan_free(&plan);
   in_folder("gem.pov", path);
   OK(abbe_pov_file_write(path, &scene, NULL, &error));
   note_file(to, "gem.pov");
-  OWNED(abbe_image, picture) = {0};
   OWNED(abbe_image, map) = {0};
-  const abbe_reference_desc desc = {.trace = {.width = 6,
-                                              .height = 4,
+  const abbe_reference_desc desc = FIELDS(.trace = {.width = 6,
+                                                    .height = 4,
 
-                                              .photons = 64,
-                                              .threads = 1,
-                                              .map_width = 4,
-                                              .map_height = 4,
-                                              .seed = 1},
-                                    .passes = 2};
-  OK(abbe_reference_trace(&scene, &desc, &picture, &map, &error));
+                                                    .photons = 64,
+                                                    .threads = 1,
+                                                    .map_width = 4,
+                                                    .map_height = 4,
+                                                    .seed = 1},
+                                          .passes = 2);
+  MADE(abbe_image, picture, abbe_reference_trace(&scene, &desc, &picture, &map, &error));
   note_image(to, "traced", &picture);
 }
 
 static void with_answers(FILE *to) {
   static const char *const groups[] = {"prism", "slab", "nest", "fresnel"};
   for (int i = 0; i < 4; i++) {
-    abbe_known_answers answers;
     const abbe_known_options options = {.only = groups[i], .threads = 1};
-    OK(abbe_known_answers_make(&options, &answers, &error));
+    MADE(abbe_known_answers, answers, abbe_known_answers_make(&options, &answers, &error));
     assert_int_equal(abbe_known_answers_failed(&answers), 0);
     for (size_t k = 0; k < answers.count; k++) {
       fprintf(to, "%s\n", answers.row[k].quantity);
       note(to, "traced", &answers.row[k].traced, sizeof(double));
     }
-    abbe_known_answers_free(&answers);
   }
 }
 
 static void with_presets(FILE *to) {
-  abbe_presets presets;
-  OK(abbe_presets_load(NULL, &presets, &error));
+  MADE(abbe_presets, presets, abbe_presets_load(NULL, &presets, &error));
   const abbe_preset_front *front = &presets.front[0];
   note(to, "margin", &front->margin, sizeof front->margin);
   for (size_t i = 0; i < front->count; i++) {
@@ -268,18 +246,15 @@ static void with_presets(FILE *to) {
                              front->point[i].desc.energy_share};
     note(to, "preset", number, sizeof number);
   }
-  abbe_presets_free(&presets);
 }
 
 static void with_messages(FILE *to) {
-  abbe_report report = {0};
   abbe_error said = {0};
   abbe_error_set(&said, ABBE_IO, "%g of %.3f", 1.5, 2.25);
   fprintf(to, "%s\n", said.text);
   assert_string_equal(said.text, "1.5 of 2.250");
-  abbe_report_add(&report, ABBE_NOTE_LOST, 1, NULL, "%g", 0.125);
+  FILLED(abbe_report, report, abbe_report_add(&report, ABBE_NOTE_LOST, 1, NULL, "%g", 0.125));
   fprintf(to, "%s\n", report.note[0].text);
-  abbe_report_free(&report);
   char text[ABBE_NUMBER_TEXT_SIZE];
   fprintf(to, "%s\n", abbe_number_text(0.1, text));
   abbe_number_write(to, "%g %.17g\n", 0.5, 1.0 / 3);

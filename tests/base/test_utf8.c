@@ -79,10 +79,10 @@ TEST(what_misleads_the_eye_is_shown) {
               {"\U000e0001", "\U000e007f", "\u6c34", "\U000e0100"}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
     for (int lines = 0; lines < 2; lines++) {
-      char text[64], right[64], out[64];
-      snprintf(text, sizeof text, "%s a%sb%sc %s", rows[i].before, rows[i].first, rows[i].last,
-               rows[i].after);
-      snprintf(right, sizeof right, "%s a\ufffdb\ufffdc %s", rows[i].before, rows[i].after);
+      char out[64];
+      const char *text =
+          printed("%s a%sb%sc %s", rows[i].before, rows[i].first, rows[i].last, rows[i].after);
+      const char *right = printed("%s a\ufffdb\ufffdc %s", rows[i].before, rows[i].after);
       const size_t n = abbe_utf8_printable(text, strlen(text), lines != 0, out, sizeof out);
       assert_string_equal(out, right);
       assert_int_equal(n, strlen(right));

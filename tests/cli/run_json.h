@@ -6,6 +6,10 @@
 
 #include <cjson/cJSON.h>
 
+static inline void cJSON_drop(cJSON **held) {
+  cJSON_Delete(*held);
+}
+
 /* Runs a shell line, which must end with code and print JSON; cJSON_Delete frees it. */
 static inline cJSON *run_json(const char *line, int code) {
   const int ended = run_line(line);
@@ -13,6 +17,12 @@ static inline cJSON *run_json(const char *line, int code) {
   cJSON *json = cJSON_Parse(run_output);
   if (json == NULL) fail_msg("%s\nno JSON: %s", line, run_output);
   return json;
+}
+
+/* The answer to another line in its place. */
+static inline void rerun_json(cJSON **json, const char *line, int code) {
+  cJSON_Delete(*json);
+  *json = run_json(line, code);
 }
 
 /* A member of an object, which must be there. */

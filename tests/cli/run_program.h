@@ -61,8 +61,7 @@ static void run_teardown(void) {
 }
 
 static inline void run_read(const char *name, char *text, size_t size) {
-  char path[128];
-  snprintf(path, sizeof path, "%s.%s", run_folder, name);
+  const char *path = printed("%s.%s", run_folder, name);
   FILE *file = fopen(path, "rb");
   assert_non_null(file);
   text[fread(text, 1, size - 1, file)] = '\0';
@@ -88,6 +87,19 @@ static inline int run_line(const char *line) {
 /* The same, of a line that ends well. */
 static inline void run_must(const char *line) {
   if (run_line(line) != 0) fail_msg("%s: %s", line, run_errors);
+}
+
+/* The same, of one after which the folder is empty. */
+static inline void run_clears(const char *line) {
+  run_must(line);
+  assert_int_equal(run_left(), 0);
+}
+
+/* The same, of one that ends with the code and says the words on stderr. */
+static inline void run_fails(const char *line, int code, const char *words) {
+  const int ended = run_line(line);
+  if (ended == code && strstr(run_errors, words) != NULL) return;
+  fail_msg("%s: ends with %d, not %d, or without '%s': %s", line, ended, code, words, run_errors);
 }
 
 /* The same, of one whose output contains the words. */

@@ -134,9 +134,7 @@ TEST(the_list_is_whole) {
   static const char *const kinds[] = {"FILE", "TABLE", ".exr", ".png", ".yaml", ".csv", ".pov"};
   size_t found = 0;
   for (size_t v = 0; v < sizeof verbs / sizeof *verbs; v++) {
-    char line[80];
-    snprintf(line, sizeof line, "\"$abbe\" %s --help | sed '/^Examples/,$d'", verbs[v]);
-    run_must(line);
+    run_must(printed("\"$abbe\" %s --help | sed '/^Examples/,$d'", verbs[v]));
     for (char *at = run_output; (at = strstr(at, "--")) != NULL;) {
       char option[40] = "", value[40] = "";
       at += 2;
@@ -163,11 +161,11 @@ static void put_option(char *out, size_t size, const struct named *n, const char
 /* Both words in one line; `part` is what is said. */
 static void refuse_pair(const struct named *a, const char *a_path, const struct named *b,
                         const char *b_path, const char *part) {
-  char line[400], first[80], second[80];
+  char first[80], second[80];
   put_option(first, sizeof first, a, a_path);
   put_option(second, sizeof second, b, b_path);
-  snprintf(line, sizeof line, "\"$abbe\" %s %s %s; code=$?; cat in.txt; exit $code", a->verb, first,
-           second);
+  const char *line =
+      printed("\"$abbe\" %s %s %s; code=$?; cat in.txt; exit $code", a->verb, first, second);
   int code = run_line(line);
   if (code != 2 || strstr(run_errors, part) == NULL)
     fail_msg("%s\n  ends with %d: %s", line, code, run_errors);
@@ -201,23 +199,16 @@ TEST(no_output_over_another_file) {
 
 /* A dash is standard output where that makes sense, and no file anywhere. */
 TEST(a_dash_is_no_file) {
-  static const char gem[] = "\"$abbe\" trace \"$house\"/scenes/gem.yaml --size 8x8 --spp 1 "
-                            "--photons 64 -q ";
+  static const char gem[] =
+      "\"$abbe\" trace \"$house\"/scenes/gem.yaml --size 8x8 --spp 1 --photons 64 -q ";
   static const char *const refused[] = {"-o -", "--png -", "--save-map=- --map 4",
                                         "-o a.exr --checkpoint -"};
-  char line[300];
-  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
-    snprintf(line, sizeof line, "%s%s", gem, refused[i]);
-    assert_int_equal(run_line(line), 2);
-    assert_contains(run_errors, "goes into a file, not to standard output");
-  }
-  snprintf(line, sizeof line, "%s--stats - --json && ! test -e ./-", gem);
-  run_says(line, "relative_error");
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
+    run_fails(printed("%s%s", gem, refused[i]), 2, "goes into a file, not to standard output");
+  run_says(printed("%s--stats - --json && ! test -e ./-", gem), "relative_error");
   assert_null(strstr(strstr(run_output, "relative_error") + 1, "relative_error")); /* once */
   assert_int_equal(
-      run_line("\"$abbe\" materials export diamond --to csv -o - | grep -c , && ! test "
-               "-e ./-"),
-      0);
+      run_line("\"$abbe\" materials export diamond --to csv -o - | grep -c , && ! test -e ./-"), 0);
 }
 
 /* Two files that are two may be named, whatever they are called. */
@@ -257,10 +248,8 @@ TEST(files_of_a_scene) {
   };
   run_must(make);
   for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
-    char line[200];
-    snprintf(line, sizeof line,
-             "\"$abbe\" %s; code=$?; sha256sum -c --quiet sums || exit 9; exit $code", lines[i]);
-    int code = run_line(line);
+    int code = run_line(printed(
+        "\"$abbe\" %s; code=$?; sha256sum -c --quiet sums || exit 9; exit $code", lines[i]));
     if (code != 2) fail_msg("%s\n  ends with %d: %s%s", lines[i], code, run_errors, run_output);
     assert_contains(run_errors, "would be written over the scene's file");
   }
@@ -271,15 +260,15 @@ TEST(files_of_a_scene) {
 TEST(files_that_no_option_names) {
   assert_true(run_line("\"$abbe\" trace a.yaml -o c.exr --png c.exr.checkpoint") == 2);
   assert_contains(run_errors, "the checkpoint 'c.exr.checkpoint'");
-  assert_true(run_line("OCIO=o.txt; export OCIO; printf kept >o.txt; \"$abbe\" display a.exr "
-                       "-o o.txt") == 2);
+  assert_true(
+      run_line("OCIO=o.txt; export OCIO; printf kept >o.txt; \"$abbe\" display a.exr -o o.txt") ==
+      2);
   assert_contains(run_errors, "$OCIO 'o.txt'");
   assert_true(
-      run_line(
-          "mkdir sub; cp \"$house\"/spectral/materials/thesis.yaml sub/t.yaml;"
-          "ln sub/t.yaml sub/hard.yaml; \"$abbe\" materials import sub --force "
-          "-o sub/hard.yaml; code=$?; cmp sub/t.yaml \"$house\"/spectral/materials/thesis.yaml "
-          "|| exit 9; rm -r sub; exit $code") == 1);
+      run_line("mkdir sub; cp \"$house\"/spectral/materials/thesis.yaml sub/t.yaml;ln sub/t.yaml "
+               "sub/hard.yaml; \"$abbe\" materials import sub --force -o sub/hard.yaml; code=$?; "
+               "cmp sub/t.yaml \"$house\"/spectral/materials/thesis.yaml || exit 9; rm -r sub; "
+               "exit $code") == 1);
   assert_contains(run_errors, "'sub/hard.yaml' would be written over");
 }
 
@@ -305,11 +294,8 @@ TEST(names_that_are_meant) {
       {"render a.yaml -o a.exr -q -ob.exr", "--output is given twice, 'a.exr' and 'b.exr'"},
       {"render a.yaml --materials a --png a.png --materials=b", "--materials is given twice"},
   };
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    char line[200];
-    snprintf(line, sizeof line, "\"$abbe\" %s", rows[i].line);
-    assert_true(run_refuses(line, 2, rows[i].part));
-  }
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    assert_true(run_refuses(printed("\"$abbe\" %s", rows[i].line), 2, rows[i].part));
   /* Abbreviations that lack more, values that look like options, and what may be repeated. */
   run_must("\"$abbe\" weights --co 3 --spa xyz --js");
   run_must("\"$abbe\" materials show n-bk7 --at 500 --at 600");

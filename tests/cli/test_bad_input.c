@@ -23,8 +23,8 @@ TEST(scenes_that_cannot_be_used) {
   static const refusal rows[] = {
       {"\"$abbe\" render missing.yaml" TO, "missing.yaml: cannot be opened: No such file"},
       {"\"$abbe\" render \"$house\"/scenes" TO, "is a directory"},
-      {"printf '\\000\\377' >scene.yaml; \"$abbe\" render scene.yaml" TO "; code=$?;"
-       "rm scene.yaml; exit $code",
+      {"printf '\\000\\377' >scene.yaml; \"$abbe\" render scene.yaml" TO
+       "; code=$?;rm scene.yaml; exit $code",
        "scene.yaml"},
       {BAD "scene_malformed.yaml" TO, "scene_malformed.yaml:21: is not well-formed YAML"},
       {BAD "scene_unknown_key.yaml" TO, ":5: a scene has no key 'lihgts'; did you mean 'lights'?"},
@@ -79,12 +79,12 @@ TEST(pipes_are_not_waited_for) {
       {SCENE("", "texture: fifo", ""), "fifo: is a named pipe"},
       {"mkfifo fifo.obj;" SCENE("", "reflectance: 1", ", {mesh: fifo.obj, material: f2}"),
        "fifo.obj: is a named pipe"},
-      {"echo '{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
-       "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+      {"echo "
+       "'{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{"
+       "\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
-       "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
-       "\"buffers\":[{\"byteLength\":36,\"uri\":\"fifo\"}]}' >box.gltf;" SCENE(
-           "", "reflectance: 1", ", {mesh: box.gltf, material: f2}"),
+       "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"buffers\":[{\"byteLength\":36,\"uri\":"
+       "\"fifo\"}]}' >box.gltf;" SCENE("", "reflectance: 1", ", {mesh: box.gltf, material: f2}"),
        "fifo: is a named pipe"},
   };
   refuse_all(rows, sizeof rows / sizeof *rows, 1);
@@ -92,10 +92,9 @@ TEST(pipes_are_not_waited_for) {
       {FIFO "\"$abbe\" compare fifo fifo" AFTER, "fifo: is a named pipe"}};
   refuse_all(comparison, 1, 1);
   /* what an OBJ says of its colours is not needed */
-  run_must(
+  run_clears(
       "printf 'mtllib fifo\nv 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf "
       "2 3 4\n' >box.obj;" SCENE("", "reflectance: 1", ", {mesh: box.obj, material: f2}"));
-  assert_int_equal(run_left(), 0);
 }
 
 #define AROUND(picture)                                                                            \

@@ -36,19 +36,15 @@ TEST(parts) {
   const exr_library_file file[] = {
       {{0, 0, 3, 3}, {0, 0, 3, 3}, 1, {"Z"}, {2}, .part = "depth"},
       {{0, 0, 3, 3}, {0, 0, 3, 3}, 3, {"B", "G", "R"}, {2, 2, 2}, .part = "colours"}};
-  char command[400], parts[80], why[200];
-  snprintf(parts, sizeof parts, "%s.parts.exr", exr);
+  char why[200];
+  const char *parts = printed("%s.parts.exr", exr);
   if (!exr_library_write_parts(parts, file, 2, why, sizeof why)) fail_msg("%s", why);
-  snprintf(command, sizeof command, "info %s", parts);
-  must(0, "note:", command);
+  must(0, "note:", printed("info %s", parts));
   assert_contains(output, "its part 2");
   assert_contains(output, "3 channels");
-  snprintf(command, sizeof command, "compare %s '%s#2'", parts, parts);
-  must(0, "of 2 is read", command);
-  snprintf(command, sizeof command, "info '%s#1'", parts);
-  must(0, "1 channels", command);
-  snprintf(command, sizeof command, "display '%s#3' -o %s", parts, png);
-  must(1, "it has no part '3'; there are 1 ", command);
+  must(0, "of 2 is read", printed("compare %s '%s#2'", parts, parts));
+  must(0, "1 channels", printed("info '%s#1'", parts));
+  must(1, "it has no part '3'; there are 1 ", printed("display '%s#3' -o %s", parts, png));
   unlink(parts);
 }
 
@@ -56,11 +52,10 @@ TEST(weights_json) {
   cJSON *json = run_json("weights --count 7 --range 380:780 --illuminant D65 --space xyz --json");
   const cJSON *samples = cJSON_GetObjectItem(json, "samples");
   assert_int_equal(cJSON_GetArraySize(samples), 7);
-  abbe_wavelengths nodes = {0};
-  abbe_weights weights = {0};
   const abbe_illuminant light = {0};
-  OK(abbe_wavelengths_make(7, 380, 780, &nodes, &error));
-  OK(abbe_weights_make(&nodes, &light, ABBE_RGB_SPACE_XYZ, &weights, &error));
+  MADE(abbe_wavelengths, nodes, abbe_wavelengths_make(7, 380, 780, &nodes, &error));
+  MADE(abbe_weights, weights,
+       abbe_weights_make(&nodes, &light, ABBE_RGB_SPACE_XYZ, &weights, &error));
   for (int i = 0; i < 7; i++) {
     const cJSON *sample = cJSON_GetArrayItem(samples, i);
     assert_true(number(sample, "lambda_nm", -1) == nodes.lambda_nm[i]);
@@ -71,8 +66,6 @@ TEST(weights_json) {
     }
   }
   assert_true(fabs(number(json, "sum", 1) - 1) < 1e-15);
-  abbe_weights_free(&weights);
-  abbe_wavelengths_free(&nodes);
   cJSON_Delete(json);
 }
 
@@ -81,10 +74,8 @@ TEST(weights_of_every_kind) {
   static const char *const lights[] = {"D65", "D50", "a", "E"};
   for (int s = 0; s < 3; s++)
     for (int l = 0; l < 4; l++) {
-      char arguments[128];
-      snprintf(arguments, sizeof arguments, "weights --count 333 --space %s --illuminant %s --json",
-               spaces[s], lights[l]);
-      cJSON *json = run_json(arguments);
+      cJSON *json = run_json(
+          printed("weights --count 333 --space %s --illuminant %s --json", spaces[s], lights[l]));
       double sum[3] = {0}, matrix[9];
       const cJSON *sample = NULL;
       cJSON_ArrayForEach(sample, cJSON_GetObjectItem(json, "samples")) for (int k = 0; k < 3; k++)
@@ -124,8 +115,7 @@ TEST(weights_used_wrongly) {
 }
 
 static void make_picture(const double *xy, const char *space, const char *const names[4]) {
-  OWNED(abbe_image, image) = {0};
-  OK(abbe_image_make(4, 3, 4, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(4, 3, 4, names, &image, &error));
   for (int i = 0; i < 48; i++) image.data[i] = i % 4 == 3 ? (float)i : 0.18f;
   if (xy != NULL) memcpy(image.xy, xy, sizeof image.xy);
   if (space != NULL) OK(abbe_image_set_attribute(&image, "abbe:space", space, &error));
@@ -137,11 +127,9 @@ static void make_picture(const double *xy, const char *space, const char *const 
 static const char *const rgbz[4] = {"R", "G", "B", "Z"};
 
 static void show(const char *options, double rgb[3]) {
-  char arguments[512];
-  snprintf(arguments, sizeof arguments, "display %s -o %s --bits 16 %s", exr, png, options);
+  const char *arguments = printed("display %s -o %s --bits 16 %s", exr, png, options);
   if (run(arguments) != 0) fail_msg("abbe %s: %s", arguments, output);
-  OWNED(abbe_image, image) = {0};
-  OK(abbe_png_read(png, &image, &error));
+  MADE(abbe_image, image, abbe_png_read(png, &image, &error));
   for (int k = 0; k < 3; k++) rgb[k] = (double)image.data[k];
 }
 
@@ -173,8 +161,7 @@ TEST(display_source) {
   make_picture(NULL, NULL, layer);
   show("--view Plain --layer caustic", rgb);
   assert_true(fabs(rgb[0] - rgb[1]) < 1e-3);
-  char arguments[300];
-  snprintf(arguments, sizeof arguments, "display %s -o %s", exr, png);
+  const char *arguments = printed("display %s -o %s", exr, png);
   must(1, "caustic.G", arguments);
   make_picture(NULL, "rgb", rgbz);
   must(1, "'rgb'", arguments);
@@ -210,8 +197,7 @@ TEST(one_meaning_of_the_numbers) {
     snprintf(line, sizeof line, commands[c], exr, png);
     must(0, "does not say its colour space; linear Rec.709 is taken", line);
   }
-  OWNED(abbe_image, image) = {0};
-  OK(abbe_image_make(8, 4, 3, rgbz, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(8, 4, 3, rgbz, &image, &error));
   for (int i = 0; i < 96; i++) image.data[i] = 1;
   OK(abbe_exr_write(exr, &image, &error));
   snprintf(line, sizeof line, "environment %s", exr);
@@ -291,26 +277,19 @@ TEST(gamut) {
 
 TEST(display_fails) {
   make_picture(NULL, NULL, rgbz);
-  char a[512];
   unlink(png);
   must(2, "which file", "display -o a.png");
   must(2, "8 or 16 bits, not 12", "display a.exr -o a.png --bits 12");
   must(2, "--exposure 'bright'", "display a.exr -o a.png --exposure bright");
-  snprintf(a, sizeof a, "display %s", exr);
-  must(2, "-o names", a);
+  must(2, "-o names", printed("display %s", exr));
   must(1, "/no/such.exr", "display /no/such.exr -o a.png");
-  snprintf(a, sizeof a, "display %s -o %s --view Plane", exr, png);
-  must(1, "Looking, Plain, Raw", a);
-  snprintf(a, sizeof a, "display %s -o %s --ocio /no/such.ocio", exr, png);
-  must(1, "/no/such.ocio", a);
+  must(1, "Looking, Plain, Raw", printed("display %s -o %s --view Plane", exr, png));
+  must(1, "/no/such.ocio", printed("display %s -o %s --ocio /no/such.ocio", exr, png));
   OK(abbe_file_write(other, "broken: [", 9, &error));
-  snprintf(a, sizeof a, "display %s -o %s --ocio %s", exr, png, other);
-  must(1, other, a);
+  must(1, other, printed("display %s -o %s --ocio %s", exr, png, other));
   assert_int_not_equal(access(png, F_OK), 0);
-  snprintf(a, sizeof a, "display %s -o /no/such/folder/a.png", exr);
-  must(1, "/no/such/folder/a.png", a);
-  snprintf(a, sizeof a, "display %s -o %s", other, png);
-  must(1, other, a);
+  must(1, "/no/such/folder/a.png", printed("display %s -o /no/such/folder/a.png", exr));
+  must(1, other, printed("display %s -o %s", other, png));
   must(0, "Display P3 / Plain", "display --list");
 }
 
@@ -318,9 +297,7 @@ TEST(info) {
   double xy[8];
   abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_ACESCG, xy);
   make_picture(xy, "acescg", rgbz);
-  char a[256];
-  snprintf(a, sizeof a, "info %s --json", exr);
-  cJSON *json = run_json(a);
+  cJSON *json = run_json(printed("info %s --json", exr));
   assert_true(number(json, "width", -1) == 4 && number(json, "height", -1) == 3);
   assert_true(fabs(number(json, "chromaticities", 0) - 0.713) < 1e-6);
   assert_string_equal(cJSON_GetStringValue(cJSON_GetObjectItem(
@@ -332,23 +309,19 @@ TEST(info) {
   assert_true(number(z, "min", -1) == 11 && number(z, "max", -1) == 47);
   assert_true(number(z, "mean", -1) == 29);
   cJSON_Delete(json);
-  snprintf(a, sizeof a, "info %s", exr);
-  must(0, "4 x 3 pixels, 4 channels", a);
+  must(0, "4 x 3 pixels, 4 channels", printed("info %s", exr));
   must(2, "which file", "info");
   must(1, "/no/such.exr", "info /no/such.exr");
   OK(abbe_file_write(other, "broken", 6, &error));
-  snprintf(a, sizeof a, "info %s", other);
-  must(1, other, a);
+  must(1, other, printed("info %s", other));
 }
 
 /* A full disk, by a limit on the size of files: the sentence, the code, the old file. */
 TEST(a_full_disk) {
   make_picture(NULL, NULL, rgbz);
   OK(abbe_file_write(png, "old", 3, &error));
-  char command[512];
-  snprintf(command, sizeof command, "sh -c 'ulimit -f 0; %s display %s -o %s' > %s 2>/dev/null",
-           ABBE_PROGRAM, exr, png, "/dev/null");
-  int status = system(command);
+  int status = system(printed("sh -c 'ulimit -f 0; %s display %s -o %s' > %s 2>/dev/null",
+                              ABBE_PROGRAM, exr, png, "/dev/null"));
   assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 1);
   FREED char *data = NULL;
   size_t size = 0;

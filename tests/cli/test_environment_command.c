@@ -18,7 +18,7 @@ static double number(const cJSON *object, const char *key, int index) {
 
 /* A lamp at +x that is turned to +y, on a grey of 0.5. */
 static void check(const char *line) {
-  cJSON *json = run_json(line, 0);
+  HELD(cJSON, json) = run_json(line, 0);
   assert_near(number(json, "irradiance_down", 0), 3.14159265 / 2, 2e-4);
   assert_near(number(json, "brightest", 1), 100.5, 0.1);
   assert_near(number(json, "brightest_azimuth", -1), 90, 1);
@@ -27,7 +27,6 @@ static void check(const char *line) {
   const double lamp = 0.00861 * 100, all = lamp + 2 * 3.14159265;
   assert_near(number(json, "share_of_brightest_1_percent", -1), (lamp + 0.02 * 3.14159265) / all,
               1e-3);
-  cJSON_Delete(json);
 }
 
 GROUP(run_setup, run_teardown);
@@ -45,33 +44,29 @@ TEST(a_scene_and_its_picture) {
 /* The shipped pictures give the irradiances that scenes/environments/make-environments asks for: of
  * the skies by what is written there, of the studio by the scene whose it is. */
 TEST(what_ships) {
-  cJSON *json = run_json(
+  HELD(cJSON, json) = run_json(
       "\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/environments/overcast-sky.exr --json", 0);
   assert_near(number(json, "irradiance_up", 1), 3, 1e-3);
   assert_near(number(json, "irradiance_down", 1), 0.25 * 3.14159265, 1e-3);
-  cJSON_Delete(json);
-  json = run_json(
-      "\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/environments/clear-sky.exr --json", 0);
+  rerun_json(&json,
+             "\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/environments/clear-sky.exr --json",
+             0);
   const double sine = 0.61566148;
   assert_near(number(json, "irradiance_up", 0), 0.4 + 3.1 * sine, 2e-3);
   assert_near(number(json, "irradiance_up", 2), 0.8 + 2.6 * sine, 2e-3);
   assert_near(number(json, "brightest_elevation", -1), 38, 1.5);
-  cJSON_Delete(json);
-  json = run_json("\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/diamond-studio.yaml --json", 0);
+  rerun_json(&json, "\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/diamond-studio.yaml --json",
+             0);
   const double up = number(json, "irradiance_up", 0);
-  cJSON_Delete(json);
-  json = run_json("\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/environments/studio.exr --json",
-                  0);
+  rerun_json(&json,
+             "\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/environments/studio.exr --json", 0);
   assert_near(number(json, "irradiance_up", 0), up, 2e-3 * up);
-  cJSON_Delete(json);
 }
 
 TEST(what_is_refused) {
   write_text("s.yaml", VIEW "lights: [{kind: point, position: [0, 0, 1], intensity: 1}]\n");
-  assert_int_equal(run_line("\"$abbe\" environment s.yaml"), 1);
-  assert_contains(run_errors, "has no 'environment'");
-  assert_int_equal(run_line("\"$abbe\" environment missing.hdr"), 1);
-  assert_contains(run_errors, "missing.hdr");
+  run_fails("\"$abbe\" environment s.yaml", 1, "has no 'environment'");
+  run_fails("\"$abbe\" environment missing.hdr", 1, "missing.hdr");
   assert_int_equal(run_line("\"$abbe\" environment"), 2);
   assert_int_equal(
       run_line("\"$abbe\" environment s.yaml -o x.png; code=$?; rm s.yaml; exit $code"), 2);

@@ -14,10 +14,10 @@ TEST(a_scene_is_exported) {
 }
 
 TEST(materials_as_json) {
-  cJSON *json = run_json("\"$abbe\" export \"$house\"/scenes/sphere.yaml -o s.pov --json "
-                         "--photons 5000 --samples 15 && grep -q 'Photons = 5000' s.pov && "
-                         "grep -q 'Samples = 15' s.pov && rm s.pov",
-                         0);
+  HELD(cJSON, json) = run_json(
+      "\"$abbe\" export \"$house\"/scenes/sphere.yaml -o s.pov --json --photons 5000 --samples 15 "
+      "&& grep -q 'Photons = 5000' s.pov && grep -q 'Samples = 15' s.pov && rm s.pov",
+      0);
   const cJSON *list = cJSON_GetObjectItemCaseSensitive(json, "materials");
   assert_int_equal(cJSON_GetArraySize(list), 1);
   const cJSON *glass = cJSON_GetArrayItem(list, 0);
@@ -27,7 +27,6 @@ TEST(materials_as_json) {
   const double dispersion = cJSON_GetObjectItemCaseSensitive(glass, "dispersion")->valuedouble;
   assert_true(dispersion > 1.008 && dispersion < 1.4725 / 1.4546 + 0.001);
   assert_near(cJSON_GetObjectItemCaseSensitive(json, "units_per_metre")->valuedouble, 100, 0);
-  cJSON_Delete(json);
   assert_int_equal(run_left(), 0);
 }
 
@@ -41,24 +40,18 @@ TEST(other_programs) {
               {"--to gltf", "p.glb", "sf10: n as 'abbe'"},
               {"--to blender", "p.py", "n as 'three'"}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    char line[300];
-    snprintf(line, sizeof line, "\"$abbe\" export \"$house\"/scenes/prism.yaml %s -o %s",
-             rows[i].to, rows[i].file);
-    run_must(line);
+    run_must(printed("\"$abbe\" export \"$house\"/scenes/prism.yaml %s -o %s", rows[i].to,
+                     rows[i].file));
     assert_string_equal(run_output, "");
     assert_contains(run_errors, rows[i].says);
-    snprintf(line, sizeof line,
-             "\"$abbe\" export \"$house\"/scenes/prism.yaml %s -o %s --json "
-             "&& rm p.* p-*",
-             rows[i].to, rows[i].file);
-    run_line(line);
-    cJSON *json = cJSON_Parse(run_output);
+    run_line(printed("\"$abbe\" export \"$house\"/scenes/prism.yaml %s -o %s --json && rm p.* p-*",
+                     rows[i].to, rows[i].file));
+    HELD(cJSON, json) = cJSON_Parse(run_output);
     assert_non_null(json);
     const cJSON *glass = cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(json, "materials"), 0);
     assert_string_equal(cJSON_GetObjectItemCaseSensitive(glass, "name")->valuestring, "sf10");
     const double worst = cJSON_GetObjectItemCaseSensitive(glass, "worst")->valuedouble;
     assert_true(worst > 0 && worst >= cJSON_GetObjectItemCaseSensitive(glass, "rms")->valuedouble);
-    cJSON_Delete(json);
     run_must("rm -f p.* p-*");
   }
   assert_int_equal(run_left(), 0);

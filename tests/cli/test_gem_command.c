@@ -14,7 +14,7 @@ TEST(a_design_is_described) {
   assert_contains(run_output, "Meet A-A-B-B");
   assert_contains(run_output, "main       crown 42.00 degrees, facets B; pavilion 43.00 degrees");
   assert_contains(run_output, "carats");
-  cJSON *json = run_json(GEM "info" QUARTZ "--json", 0);
+  HELD(cJSON, json) = run_json(GEM "info" QUARTZ "--json", 0);
   assert_near(json_number(json_item(json, "facets"), "girdle"), 16, 0);
   assert_near(json_number(json_item(json, "ratios"), "L/W"), 1, 1e-9);
   assert_near(json_number(json_item(json, "ratios"), "Vol/W^3"), 2.097983 / pow(2.039182, 3), 1e-6);
@@ -24,7 +24,6 @@ TEST(a_design_is_described) {
   const cJSON *tier = cJSON_GetArrayItem(json_item(json, "tiers"), 2);
   assert_near(json_number(tier, "angle_deg"), -43, 0);
   assert_int_equal(cJSON_GetArraySize(json_item(tier, "facets")), 8);
-  cJSON_Delete(json);
 }
 
 TEST(there_and_back) {
@@ -42,7 +41,7 @@ TEST(there_and_back) {
 TEST(other_angles) {
   run_says(GEM "info" QUARTZ "--material quartz --rough 0.5inx9mmx12", "a stone of ");
   run_says(GEM "retarget" QUARTZ "--material sapphire", "at the same width 6.1 % less weight");
-  cJSON *json = run_json(GEM "retarget" QUARTZ "--index 1.768 -o s.asc --json", 0);
+  HELD(cJSON, json) = run_json(GEM "retarget" QUARTZ "--index 1.768 -o s.asc --json", 0);
   const cJSON *pavilion = json_item(json, "pavilion");
   assert_near(json_number(pavilion, "from_deg"), 43, 0);
   assert_true(json_number(pavilion, "to_deg") > 40.5 && json_number(pavilion, "to_deg") < 41.5);
@@ -56,7 +55,6 @@ TEST(other_angles) {
   json = run_json(GEM "retarget" QUARTZ "--pavilion 41 --json", 0);
   assert_near(json_number(json_item(json, "crown"), "tangent_ratio"), 1, 0);
   assert_near(json_number(json_item(json, "pavilion"), "to_deg"), 41, 0);
-  cJSON_Delete(json);
   run_must("rm s.asc");
 }
 
@@ -89,16 +87,12 @@ TEST(what_is_refused) {
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
     assert_true(run_refuses(wrong[i].line, wrong[i].code, wrong[i].part));
   /* An open stone, and a design that does not say for which index it was made. */
-  assert_int_equal(run_line("printf 'g 96 0\\na -90 1 96 24 48 72\\n' >o.asc; " GEM "info o.asc"),
-                   1);
-  assert_contains(run_errors, "open");
-  assert_int_equal(run_line("printf 'a 40 1 96 24 48 72\\na -40 1 96 24 48 72\\n' >>o.asc; " GEM
-                            "retarget o.asc --index 1.7"),
-                   1);
-  assert_contains(run_errors, "--from-index");
+  run_fails("printf 'g 96 0\\na -90 1 96 24 48 72\\n' >o.asc; " GEM "info o.asc", 1, "open");
+  run_fails("printf 'a 40 1 96 24 48 72\\na -40 1 96 24 48 72\\n' >>o.asc; " GEM
+            "retarget o.asc --index 1.7",
+            1, "--from-index");
   /* A design is not written over itself. */
-  assert_int_equal(run_line("cp" QUARTZ "o.asc; " GEM "retarget o.asc --index 1.7 -o o.asc"), 2);
-  assert_contains(run_errors, "o.asc");
+  run_fails("cp" QUARTZ "o.asc; " GEM "retarget o.asc --index 1.7 -o o.asc", 2, "o.asc");
   run_must("rm o.asc");
   assert_int_equal(run_left(), 0);
 }

@@ -52,10 +52,8 @@ TEST(numbers_add_up) {
   /* Without a head all that comes from above is returned; a wider one takes more. */
   double before = 1;
   for (int head = 0; head <= 30; head += 10) {
-    char line[300];
-    snprintf(line, sizeof line, GEM "report" DIAMOND SMALL "--tilt 0 --json --head-shadow %d",
-             head);
-    json = run_json(line, 0);
+    json =
+        run_json(printed(GEM "report" DIAMOND SMALL "--tilt 0 --json --head-shadow %d", head), 0);
     const double back = value(json_item(json, "measures"), "return");
     if (head == 0) assert_near(back, value(json_item(json, "measures"), "iso"), 1e-9);
     assert_true(back < before);
@@ -138,31 +136,26 @@ TEST(crystals_lie_in_their_cut) {
 }
 
 TEST(the_best_is_written_and_is_as_good_as_said) {
-  cJSON *json = run_json(GEM "optimise \"$house\"/scenes/designs/brilliant-quartz.asc --quiet "
-                             "--material quartz --grid 3x3 --pavilion 36:46 --size 24 -o b.asc "
-                             "--plot p.png --json",
-                         0);
+  HELD(cJSON, json) =
+      run_json(GEM "optimise \"$house\"/scenes/designs/brilliant-quartz.asc --quiet --material "
+                   "quartz --grid 3x3 --pavilion 36:46 --size 24 -o b.asc --plot p.png --json",
+               0);
   const double best = json_number(json_item(json, "best"), "value");
   assert_true(best >= json_number(json_item(json, "design"), "value") - 0.02);
   assert_near(json_number(json_item(json, "best"), "pavilion_deg"), 41, 5.001);
   assert_int_equal(cJSON_GetArraySize(json_item(json, "grid")), 9);
-  cJSON_Delete(json);
-  json = run_json(GEM "report b.asc -q --material quartz --wavelengths 6 --size 24 --tilt 0 --json",
-                  0);
+  rerun_json(&json,
+             GEM "report b.asc -q --material quartz --wavelengths 6 --size 24 --tilt 0 --json", 0);
   assert_near(value(json_item(json, "measures"), "iso"), best, 1e-4); /* the same rays */
-  cJSON_Delete(json);
-  json = run_json(GEM "info b.asc --json", 0);
+  rerun_json(&json, GEM "info b.asc --json", 0);
   assert_near(json_number(json, "corners"), 57, 0); /* all meets */
-  cJSON_Delete(json);
-  run_must("rm b.asc p.png");
-  assert_int_equal(run_left(), 0);
+  run_clears("rm b.asc p.png");
 }
 
 TEST(a_design_brings_its_index) {
-  cJSON *json = run_json(GEM "report" DIAMOND "--size 24 --wavelengths 5 --tilt 0 --json", 0);
+  HELD(cJSON, json) = run_json(GEM "report" DIAMOND "--size 24 --wavelengths 5 --tilt 0 --json", 0);
   assert_string_equal(json_item(json, "material")->valuestring, "index 2.417");
   shares_add_up(json_item(json, "measures"));
-  cJSON_Delete(json);
 }
 
 TEST(what_is_refused) {

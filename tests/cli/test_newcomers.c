@@ -28,9 +28,7 @@ static const struct wrong {
     {"\"$abbe\" help rendr", "there is no command 'rendr'; did you mean 'render'?", 2},
     {"\"$abbe\" gem reprot round.asc", "there is no verb 'reprot'; did you mean 'report'?", 2},
     {QUARTZ RENDER "rond.asc",
-     "rond.asc: cannot be opened: No such file or directory; did you mean "
-     "'round.asc'?",
-     1},
+     "rond.asc: cannot be opened: No such file or directory; did you mean 'round.asc'?", 1},
     {QUARTZ RENDER "./rond.asc", "did you mean './round.asc'?", 1},
     {QUARTZ RENDER "round.asc --materail ruby",
      "there is no option '--materail'; did you mean '--material'?", 2},
@@ -84,8 +82,8 @@ static const struct wrong {
      "'my.yaml' is no design that is known by its name: they end with .asc", 1},
     /* stones' files */
     {": >empty.asc; " RENDER "empty.asc",
-     "empty.asc: there is no facet in it; a design in GemCad's "
-     "text has lines such as 'a 42.0 0.7045 96 n B 84 72'",
+     "empty.asc: there is no facet in it; a design in GemCad's text has lines such as 'a 42.0 "
+     "0.7045 96 n B 84 72'",
      1},
     {"printf nothing >a.stl; " RENDER "a.stl", "a.stl: line 1: 'solid' belongs here", 1},
     {"printf 'GemCad 5.0\\n' >a.gem; " RENDER "a.gem",
@@ -115,9 +113,7 @@ static const struct wrong {
     {SCENE("s/^  - .name: stone/\\t- {name: stone/") PNG,
      "my.yaml:5: the line begins with a tab; YAML indents by blanks", 1},
     {SCENE("s/material: ruby/material: rubyy/") PNG,
-     "my.yaml:5: the table 'default' has no material "
-     "'rubyy'; did you mean 'ruby'?",
-     1},
+     "my.yaml:5: the table 'default' has no material 'rubyy'; did you mean 'ruby'?", 1},
     {SCENE("s/material: ruby/material: gold/") PNG,
      "say 'mirror: gold' in place of 'material: gold'", 1},
     {SCENE("s/, material: ruby//") PNG, "my.yaml:5: an object has one of these: a 'material'", 1},
@@ -127,8 +123,8 @@ static const struct wrong {
     {SCENE("s/kind: point/kind: lamp/") PNG,
      "my.yaml:2: 'kind: lamp' is not known; it is one of point, spot, directional", 1},
     {SCENE("/^lights/d") PNG,
-     "the scene has no light; give it at least one under 'lights', or "
-     "surroundings under 'environment'",
+     "the scene has no light; give it at least one under 'lights', or surroundings under "
+     "'environment'",
      1},
     {SCENE("s/target: .0, 0, 3mm./target: [0, -3cm, 3cm]/") PNG,
      "my.yaml:1: the camera's 'eye' and 'target' are the same point", 1},
@@ -182,15 +178,13 @@ TEST(every_mistake_gets_its_sentence) {
 /* Files on the command line count from where the user stands, and ~ is the user's folder. */
 TEST(files_count_from_here) {
   assert_int_equal(
-      run_line(
-          SCENE("s/round.asc/nowhere.asc/") "mkdir sub; mv my.yaml sub; cp round.asc sub/o.asc;"
-                                            "\"$abbe\" plan sub/my.yaml --set "
-                                            "objects.stone.file=round.asc >/dev/null &&"
-                                            "\"$abbe\" plan sub/my.yaml --set "
-                                            "objects.stone.file=o.asc >/dev/null &&"
-                                            "HOME=$PWD \"$abbe\" plan sub/my.yaml --set "
-                                            "objects.stone.file=~/round.asc "
-                                            ">/dev/null; code=$?; rm -r sub; exit $code"),
+      run_line(SCENE(
+          "s/round.asc/nowhere.asc/") "mkdir sub; mv my.yaml sub; cp round.asc sub/o.asc;\"$abbe\" "
+                                      "plan sub/my.yaml --set objects.stone.file=round.asc "
+                                      ">/dev/null &&\"$abbe\" plan sub/my.yaml --set "
+                                      "objects.stone.file=o.asc >/dev/null &&HOME=$PWD \"$abbe\" "
+                                      "plan sub/my.yaml --set objects.stone.file=~/round.asc "
+                                      ">/dev/null; code=$?; rm -r sub; exit $code"),
       0);
   run_each(run_remove, NULL);
 }
@@ -198,11 +192,11 @@ TEST(files_count_from_here) {
 /* The scene that is saved draws the picture that was drawn, bit for bit. */
 TEST(a_saved_scene_draws_the_same) {
   const int code = run_line(
-      QUARTZ "mkdir sub; " RENDER
-             "round.asc --look velvet --size 24x24 -q --save-scene sub/my.yaml "
-             "-o a.exr && test ! -e round.png && " RENDER "sub/my.yaml --size 24x24 -q -o b.exr && "
-             "\"$abbe\" compare a.exr b.exr --json | tr -d ' \\t\\n' | "
-             "grep -q '\"relative_rmse\":{\"value\":0,'; code=$?; rm -r sub; exit $code");
+      QUARTZ
+      "mkdir sub; " RENDER "round.asc --look velvet --size 24x24 -q --save-scene sub/my.yaml -o "
+      "a.exr && test ! -e round.png && " RENDER
+      "sub/my.yaml --size 24x24 -q -o b.exr && \"$abbe\" compare a.exr b.exr --json | tr -d ' "
+      "\\t\\n' | grep -q '\"relative_rmse\":{\"value\":0,'; code=$?; rm -r sub; exit $code");
   if (code != 0) fail_msg("%s", run_errors);
   run_each(run_remove, NULL);
 }
@@ -210,8 +204,9 @@ TEST(a_saved_scene_draws_the_same) {
 TEST(a_picture_is_named_after_its_stone) {
   run_must(QUARTZ RENDER "round.asc --size 16x16 --with none --alpha && test -s round.png");
   /* the renderer's picture is sharp, and so is its alpha */
-  run_must(QUARTZ RENDER "round.asc --size 16x16 --with none --alpha "
-                         "--set camera.aperture=16 && test -s round.png");
+  run_must(
+      QUARTZ RENDER
+      "round.asc --size 16x16 --with none --alpha --set camera.aperture=16 && test -s round.png");
   assert_contains(run_errors, "round.asc as quartz, 6.5 mm wide (its design is for an index of");
   run_each(run_remove, NULL);
 }

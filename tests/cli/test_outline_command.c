@@ -9,8 +9,7 @@ enum { WIDE = 64, HIGH = 48 };
  * in the layer caustic where that is asked for. */
 static void write_square(const char *name, int x, int y, float grey, bool apart) {
   static const char *const names[] = {"R", "G", "B", "caustic.R", "caustic.G", "caustic.B"};
-  OWNED(abbe_image, image) = {0};
-  OK(abbe_image_make(WIDE, HIGH, apart ? 6 : 3, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(WIDE, HIGH, apart ? 6 : 3, names, &image, &error));
   for (int i = 0; i < WIDE * HIGH; i++) {
     float *p = image.data + (size_t)i * image.channels;
     p[0] = p[1] = p[2] = grey;
@@ -27,9 +26,9 @@ TEST(two_pictures_as_json) {
   write_square("a.exr", 10, 20, 0.25f, true);
   write_square("b.exr", 14, 20, 0.5f, false);
   write_square("dark.exr", WIDE, HIGH, 0.5f, false);
-  cJSON *json = run_json("\"$abbe\" outline a.exr b.exr --minus dark.exr --blur 0 --share 1 "
-                         "--json && rm b.exr dark.exr",
-                         0);
+  HELD(cJSON, json) = run_json("\"$abbe\" outline a.exr b.exr --minus dark.exr --blur 0 --share 1 "
+                               "--json && rm b.exr dark.exr",
+                               0);
   const cJSON *pictures = cJSON_GetObjectItemCaseSensitive(json, "pictures");
   for (int i = 0; i < 2; i++) {
     const cJSON *picture = cJSON_GetArrayItem(pictures, i);
@@ -47,7 +46,6 @@ TEST(two_pictures_as_json) {
   const cJSON *blue = cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(both, "hues"), 4);
   assert_near(json_number(blue, "apart"), 4, 1e-6);
   assert_near(json_number(blue, "overlap"), 0.5, 1e-6);
-  cJSON_Delete(json);
   run_says("\"$abbe\" outline a.exr && rm a.exr", "inside the outline, pixels");
   assert_contains(run_output, "blue");
   assert_int_equal(run_left(), 0);

@@ -8,8 +8,8 @@
  */
 static void write_picture(const char *name, const int display[4], const int data[4]) {
   exr_library_file f = {.channels = 3, .name = {"B", "G", "R"}, .type = {2, 2, 2}};
-  char path[128], why[300];
-  snprintf(path, sizeof path, "%s/%s", run_folder, name);
+  char why[300];
+  const char *path = printed("%s/%s", run_folder, name);
   memcpy(f.display_window, display, sizeof f.display_window);
   memcpy(f.data_window, data, sizeof f.data_window);
   if (!exr_library_write(path, &f, why, sizeof why)) fail_msg("%s: %s", name, why);
@@ -67,8 +67,8 @@ TEST(compare) {
   ends_with(1, "$abbe compare wide.exr cut.exr");
   ends_with(0, "$abbe compare apart.exr apart.exr --tolerance relative_rmse=0");
   ends_with(1, "$abbe compare plain.exr apart.exr");
-  assert_contains(run_errors, "plain.exr shows (0, 0) to (31, 23) and apart.exr (100, 50) to "
-                              "(131, 73)");
+  assert_contains(run_errors,
+                  "plain.exr shows (0, 0) to (31, 23) and apart.exr (100, 50) to (131, 73)");
   ends_with(1, "$abbe compare plain.exr plain.exr --mask apart.exr");
   assert_contains(run_errors, "apart.exr shows (100, 50)");
   ends_with(1, "$abbe outline plain.exr apart.exr");
@@ -81,8 +81,7 @@ TEST(compare) {
 TEST(display) {
   write_pictures();
   ends_with(0, "$abbe display left.exr -o left.png --view Raw");
-  OWNED(abbe_image, image) = {0};
-  OK(abbe_png_read(run_path("left.png"), &image, &error));
+  MADE(abbe_image, image, abbe_png_read(run_path("left.png"), &image, &error));
   assert_int_equal(image.width, 32);
   assert_int_equal(image.height, 24);
   for (size_t y = 0; y < 24; y++)
@@ -97,12 +96,12 @@ static void write_parts(const char *name) {
   exr_library_file f[2] = {
       {.part = "depth", .channels = 1, .name = {"Z"}, .type = {2}},
       {.part = "rgba", .channels = 3, .name = {"B", "G", "R"}, .type = {2, 2, 2}}};
-  char path[128], why[300];
+  char why[300];
   for (int i = 0; i < 2; i++) {
     memcpy(f[i].data_window, (const int[]){0, 0, 7, 15}, sizeof f[i].data_window);
     memcpy(f[i].display_window, (const int[]){0, 0, 31, 15}, sizeof f[i].display_window);
   }
-  snprintf(path, sizeof path, "%s/%s", run_folder, name);
+  const char *path = printed("%s/%s", run_folder, name);
   if (!exr_library_write_parts(path, f, 2, why, sizeof why)) fail_msg("%s: %s", name, why);
 }
 

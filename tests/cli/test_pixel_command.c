@@ -16,8 +16,7 @@ static void make_picture(void) {
     snprintf(name[i], sizeof name[i], "S0.%d,0nm", 385 + 10 * i);
     names[5 + i] = name[i];
   }
-  OWNED(abbe_image, image);
-  OK(abbe_image_make(2, 2, 45, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(2, 2, 45, names, &image, &error));
   for (size_t i = 0; i < 4 * 45; i++) image.data[i] = 1;
   OK(abbe_exr_write(PICTURE, &image, &error));
 }

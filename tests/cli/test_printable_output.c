@@ -42,10 +42,9 @@ static void write_text(const char *name, const char *text) {
 
 static void write_picture(const char *name) {
   static const char *const names[] = {"R", "G", "B", "x" EVIL "\nforged 1 1 1"};
-  OWNED(abbe_image, image) = {0};
   char path[300];
   path_of(name, path);
-  OK(abbe_image_make(4, 4, 4, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(4, 4, 4, names, &image, &error));
   for (int i = 0; i < 64; i++) image.data[i] = 0.5f;
   OK(abbe_image_set_attribute(&image, "note" EVIL, "a\n" EVIL "\r" EVIL, &error));
   OK(abbe_exr_write(path, &image, &error));
@@ -56,14 +55,16 @@ static void write_picture(const char *name) {
 
 static void write_scene(const char *name, const char *rest) {
   char text[2000];
-  snprintf(text, sizeof text,
-           "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05], size: [8, 6]}\n"
-           "lights:\n- {name: \"la" YAML_EVIL "mp\", kind: point, position: [0.05, 0.03, 0.6], "
-           "intensity: 1}\n"
-           "objects:\n- {name: \"fl" YAML_EVIL "oor\", shape: rectangle, width: 2, height: 2, "
-           "reflectance: 0.5}\n- {name: \"ba" YAML_EVIL "ll\", shape: sphere, radius: 0.04, "
-           "transform: [{translate: [0, 0, 0.2]}], material: n-bk7}\n%s",
-           rest);
+  snprintf(
+      text, sizeof text,
+      "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05], size: [8, 6]}\n"
+      "lights:\n- {name: \"la" YAML_EVIL
+      "mp\", kind: point, position: [0.05, 0.03, 0.6], intensity: 1}\n"
+      "objects:\n- {name: \"fl" YAML_EVIL
+      "oor\", shape: rectangle, width: 2, height: 2, reflectance: 0.5}\n- {name: \"ba" YAML_EVIL
+      "ll\", shape: sphere, radius: 0.04, transform: [{translate: [0, 0, 0.2]}], material: "
+      "n-bk7}\n%s",
+      rest);
   write_text(name, text);
 }
 
@@ -76,11 +77,12 @@ static void prepare(void) {
               "- {name: x, shape: sphere, radius: 0.01, material: \"no" YAML_EVIL "ne\"}\n");
   write_scene("mesh.yaml", "- {name: x, mesh: \"no" YAML_EVIL "ne.obj\", material: n-bk7}\n");
   write_scene("broken.yaml", "  - [\x01\x1b[31m");
-  write_text("table.yaml", "description: \"de" YAML_EVIL "scribed\"\nmaterials:\n"
-                           "- {name: good, model: constant, coefficients: [1.5], "
-                           "source: \"so" YAML_EVIL "urce\", description: \"de" YAML_EVIL "s\"}\n");
-  write_text("bad_name.yaml", "materials:\n- {name: \"na\\x9b31m\", model: constant, "
-                              "coefficients: [1.5], source: made up}\n");
+  write_text("table.yaml",
+             "description: \"de" YAML_EVIL "scribed\"\nmaterials:\n"
+             "- {name: good, model: constant, coefficients: [1.5], source: \"so" YAML_EVIL
+             "urce\", description: \"de" YAML_EVIL "s\"}\n");
+  write_text("bad_name.yaml", "materials:\n- {name: \"na\\x9b31m\", model: constant, coefficients: "
+                              "[1.5], source: made up}\n");
   write_text("power.csv", "400 1\n500 " EVIL "\n");
   write_text("points.csv", "wl,n\n0.5,1.5\n0.6," EVIL "\n");
   write_text("evil.ocio", "ocio_profile_version: 2\nroles: {scene_linear: ap0}\n"
@@ -141,10 +143,8 @@ TEST(everything_that_is_said) {
   };
   prepare();
   for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
-    char line[1024];
-    snprintf(line, sizeof line, "evil=\"$(printf '%s')\"; %s",
-             "\\033]0;x\\007\\033[31m\\177\\302\\2331m\\2332m", lines[i]);
-    const int code = run_line(line);
+    const int code = run_line(printed("evil=\"$(printf '%s')\"; %s",
+                                      "\\033]0;x\\007\\033[31m\\177\\302\\2331m\\2332m", lines[i]));
     if (run_output[0] == '\0' && run_errors[0] == '\0') fail_msg("%s says nothing", lines[i]);
     if (!is_printable(run_output) || !is_printable(run_errors))
       fail_msg("%s says what is not printable:\n%s%s", lines[i], run_output, run_errors);
@@ -160,7 +160,8 @@ TEST(everything_that_is_said) {
 TEST(json_in_files) {
   prepare();
   run_must("$abbe trace names.yaml --spp 1 --photons 16 --map 4 -q --stats t.json -o t.exr");
-  char path[300], *text = NULL;
+  char path[300];
+  FREED char *text = NULL;
   size_t size = 0;
   path_of("t.json", path);
   OK(abbe_file_read(path, 1 << 20, &text, &size, &error));
@@ -168,7 +169,6 @@ TEST(json_in_files) {
   cJSON *json = cJSON_Parse(text);
   assert_non_null(json);
   cJSON_Delete(json);
-  free(text);
 }
 
 /* What a text says keeps its letters, and its lines do not look like the program's own. */
@@ -193,16 +193,14 @@ TEST(letters_pass) {
   static char text[40000];
   write_picture("evil.exr");
   char path[300];
-  abbe_image image = {0};
   path_of("evil.exr", path);
-  OK(abbe_exr_read(path, &image, &error));
+  MADE(abbe_image, image, abbe_exr_read(path, &image, &error));
   for (size_t used = 0; used + 12 < sizeof text;) {
     const char *letters[] = {"a", "\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x92\x8e", "\r\n"};
     used += (size_t)snprintf(text + used, 8, "%s", letters[used % 7 % 5]);
   }
   OK(abbe_image_set_attribute(&image, "text", text, &error));
   OK(abbe_exr_write(path, &image, &error));
-  abbe_image_free(&image);
   run_must("$abbe info evil.exr");
   char *at = strstr(run_output, "text: ");
   assert_non_null(at);
@@ -227,10 +225,7 @@ TEST(binary_for_text) {
   path_of("book.xls", path);
   OK(abbe_file_write(path, xls, sizeof xls, &error));
   for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
-    char line[200];
-    snprintf(line, sizeof line, "$abbe %s book.xls", lines[i]);
-    assert_int_equal(run_line(line), 1);
-    assert_contains(run_errors, "book.xls");
+    run_fails(printed("$abbe %s book.xls", lines[i]), 1, "book.xls");
     assert_contains(run_errors, "not a text file");
     assert_true(strlen(run_errors) < 200);
   }
@@ -239,8 +234,6 @@ TEST(binary_for_text) {
 /* An error where results should go is still seen. */
 TEST(a_full_output) {
   prepare();
-  assert_int_equal(run_line("$abbe info evil.exr > /dev/full"), 1);
-  assert_contains(run_errors, "No space left");
-  assert_int_equal(run_line("$abbe help > /dev/full"), 1);
-  assert_contains(run_errors, "No space left");
+  run_fails("$abbe info evil.exr > /dev/full", 1, "No space left");
+  run_fails("$abbe help > /dev/full", 1, "No space left");
 }

@@ -18,8 +18,7 @@ static void write_spectral(const char *path, const char *prefix, bool emissive) 
     snprintf(name[i], sizeof name[i], "%s%d,000000nm", prefix, 385 + 10 * i);
     names[i] = name[i];
   }
-  OWNED(abbe_image, image);
-  OK(abbe_image_make(2, 2, BANDS, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(2, 2, BANDS, names, &image, &error));
   for (size_t i = 0; i < 4 * BANDS; i++) {
     const double from = 380 + 10 * (double)(i % BANDS);
     image.data[i] =
@@ -40,8 +39,7 @@ static void remove_pictures(void) {
 
 /* The white of A [CIE15], by the sum of X, Y and Z. */
 static void expect_a(double y) {
-  OWNED(abbe_image, image);
-  OK(abbe_exr_read(exr, &image, &error));
+  MADE(abbe_image, image, abbe_exr_read(exr, &image, &error));
   assert_int_equal(image.channels, 3);
   double xyz[3];
   for (int k = 0; k < 3; k++) xyz[k] = (double)image.data[k];
@@ -54,8 +52,8 @@ static void expect_a(double y) {
 GROUP(make_pictures, remove_pictures);
 
 TEST(relight) {
-  assert_int_equal(run("relight relight_lamp.exr --lit-by D65 --illuminant A --space xyz "
-                       "-o relight_out.exr --png relight_out.png"),
+  assert_int_equal(run("relight relight_lamp.exr --lit-by D65 --illuminant A --space xyz -o "
+                       "relight_out.exr --png relight_out.png"),
                    0);
   assert_contains(output, "CIE 1931, 2 degrees; 1 is radiance, W/(m2 sr)");
   expect_a(1);

@@ -27,13 +27,10 @@ static void check_run(const char *line, int code) {
 }
 
 static bool same_pixels(const char *a, const char *b) {
-  OWNED(abbe_image, x);
-  OWNED(abbe_image, y);
-  read_image(a, &x);
-  read_image(b, &y);
-  bool same = x.width == y.width && x.height == y.height && x.channels == y.channels &&
-              memcmp(x.data, y.data, x.width * x.height * x.channels * sizeof *x.data) == 0;
-  return same;
+  FILLED(abbe_image, x, read_image(a, &x));
+  FILLED(abbe_image, y, read_image(b, &y));
+  return x.width == y.width && x.height == y.height && x.channels == y.channels &&
+         memcmp(x.data, y.data, x.width * x.height * x.channels * sizeof *x.data) == 0;
 }
 
 EACH(run_setup, run_teardown);
@@ -43,8 +40,7 @@ TEST(outputs) {
   assert_string_equal(run_output, "");
   assert_string_equal(run_errors, "");
   assert_true(there("a.png") && !there("a.exr.checkpoint"));
-  OWNED(abbe_image, image);
-  read_image("a.exr", &image);
+  FILLED(abbe_image, image, read_image("a.exr", &image));
   assert_int_equal(image.width, 16);
   assert_int_equal(image.height, 12);
   static const char *const names[] = {"R",        "G",         "B",         "stderr.R", "stderr.G",
@@ -61,7 +57,7 @@ TEST(outputs) {
 }
 
 TEST(numbers) {
-  cJSON *json = run_json(TRACE BALL SMALL "--spp 3 --json", 0);
+  HELD(cJSON, json) = run_json(TRACE BALL SMALL "--spp 3 --json", 0);
   assert_near(json_number(json, "passes"), 3, 0);
   assert_near(json_number(json, "photons"), 3 * 4000, 0);
   assert_true(json_number(json, "relative_error") > 0);
@@ -70,7 +66,6 @@ TEST(numbers) {
                json_number(energy, "missed") + json_number(energy, "trapped") +
                json_number(energy, "lost");
   assert_near(sum / json_number(energy, "reached"), 1, 1e-4);
-  cJSON_Delete(json);
   assert_true(run_left() == 0);
 }
 
@@ -116,8 +111,8 @@ TEST(resume) {
   assert_contains(run_errors, "5 passes");
   assert_false(there("c.exr"));
   /* another seed, another scene: refused, and nothing is lost */
-  check_run(TRACE BALL SMALL "--spp 5 -o a.exr --save-map a-map.exr --checkpoint run.c --resume "
-                             "--seed 2",
+  check_run(TRACE BALL SMALL
+            "--spp 5 -o a.exr --save-map a-map.exr --checkpoint run.c --resume --seed 2",
             1);
   assert_contains(run_errors, "seed 2");
   check_run(TRACE "\"$house/scenes/gem.yaml\"" SMALL
@@ -136,17 +131,14 @@ TEST(interrupt) {
   assert_contains(run_errors, "stopped after");
   assert_contains(run_errors, "--resume");
   assert_true(there("a.exr") && there("m.exr") && there("a.exr.checkpoint"));
-  abbe_image image;
-  read_image("a.exr", &image);
+  FILLED(abbe_image, image, read_image("a.exr", &image));
   long passes = strtol(abbe_image_attribute_text(&image, "abbe:passes"), NULL, 10);
-  abbe_image_free(&image);
   assert_true(passes >= 1);
-  char line[512];
-  snprintf(line, sizeof line,
-           TRACE BALL SMALL "--spp %ld -o a.exr --save-map m.exr --resume && " TRACE BALL SMALL
-                            "--spp %ld -o whole.exr --save-map whole-map.exr",
-           passes + 1, passes + 1);
-  check_run(line, 0);
+  check_run(printed(TRACE BALL SMALL
+                    "--spp %ld -o a.exr --save-map m.exr --resume && " TRACE BALL SMALL
+                    "--spp %ld -o whole.exr --save-map whole-map.exr",
+                    passes + 1, passes + 1),
+            0);
   assert_true(same_pixels("whole.exr", "a.exr"));
   assert_true(same_pixels("whole-map.exr", "m.exr"));
   assert_false(there("a.exr.checkpoint"));
@@ -159,18 +151,15 @@ TEST(kill) {
             0);
   assert_true(there("a.exr.checkpoint") && !there("a.exr"));
   check_run(TRACE BALL SMALL "--spp 1000000 --time 0.01 -o a.exr --resume", 0);
-  OWNED(abbe_image, image);
-  read_image("a.exr", &image);
+  FILLED(abbe_image, image, read_image("a.exr", &image));
   assert_true(strtol(abbe_image_attribute_text(&image, "abbe:passes"), NULL, 10) >= 2);
 }
 
 TEST(stops) {
-  cJSON *json = run_json(TRACE BALL SMALL "--until-error 0.9 -o a.exr --json", 0);
+  HELD(cJSON, json) = run_json(TRACE BALL SMALL "--until-error 0.9 -o a.exr --json", 0);
   assert_true(json_number(json, "relative_error") <= 0.9 && json_number(json, "passes") >= 4);
-  cJSON_Delete(json);
-  json = run_json(TRACE BALL SMALL "--time 0.2 -o a.exr --json", 0);
+  rerun_json(&json, TRACE BALL SMALL "--time 0.2 -o a.exr --json", 0);
   assert_true(json_number(json, "passes") >= 2);
-  cJSON_Delete(json);
 }
 
 TEST(used_wrongly) {
@@ -229,9 +218,8 @@ TEST(bad_scenes) {
 
 /* Two maps of one scene: the second like the first, and with `options`. */
 static void save_two_maps(const char *options, abbe_image *a, abbe_image *b) {
-  char line[512];
-  snprintf(line, sizeof line, "%s %s", TRACE BALL SMALL "--spp 1 --save-map b.exr --map-like a.exr",
-           options);
+  const char *line =
+      printed("%s %s", TRACE BALL SMALL "--spp 1 --save-map b.exr --map-like a.exr", options);
   check_run(TRACE BALL SMALL "--spp 1 --save-map a.exr", 0);
   check_run(line, 0);
   read_image("a.exr", a);
@@ -239,9 +227,8 @@ static void save_two_maps(const char *options, abbe_image *a, abbe_image *b) {
 }
 
 TEST(map_like) {
-  OWNED(abbe_image, a);
   OWNED(abbe_image, b);
-  save_two_maps("--seed 4", &a, &b);
+  FILLED(abbe_image, a, save_two_maps("--seed 4", &a, &b));
   assert_string_equal(abbe_image_attribute_text(&a, "abbe:map_view"),
                       abbe_image_attribute_text(&b, "abbe:map_view"));
   assert_int_equal(a.width, b.width);
@@ -249,7 +236,7 @@ TEST(map_like) {
 
 /* A map need not be square: it holds the same light. */
 TEST(map_sides) {
-  abbe_image a, b;
+  OWNED(abbe_image, a) = {0}, b = {0};
   save_two_maps("--map 4x16", &a, &b);
   assert_int_equal(b.width, 4);
   assert_int_equal(b.height, 16);
@@ -257,8 +244,6 @@ TEST(map_sides) {
   for (size_t i = 0; i < 256; i++) lights[0] += (double)a.data[i * a.channels + 1];
   for (size_t i = 0; i < 64; i++) lights[1] += (double)b.data[i * b.channels + 1];
   assert_true(lights[0] > 0 && fabs(lights[1] / lights[0] - 1) < 1e-5);
-  abbe_image_free(&a);
-  abbe_image_free(&b);
   check_run(TRACE BALL SMALL "--spp 1 --save-map c.exr --map 4x", 2);
 }
 
@@ -279,10 +264,9 @@ TEST(parts) {
   check_run(PART("0:2", "p0.ck") " & " PART("5:7", "p2.ck") " & wait", 0);
   assert_true(!there("a.exr") && !there("m.exr"));
   /* killed once it has a pass on the disk, and taken up again */
-  check_run(
-      PART("2:5", "p1.ck") " --checkpoint-every 0 & p=$!; while [ ! -e p1.ck ] && kill -0 $p; "
-                           "do sleep 0.02; done; kill -9 $p; wait $p; true",
-      0);
+  check_run(PART("2:5", "p1.ck") " --checkpoint-every 0 & p=$!; while [ ! -e p1.ck ] && kill -0 "
+                                 "$p; do sleep 0.02; done; kill -9 $p; wait $p; true",
+            0);
   check_run(PART("2:5", "p1.ck") " --resume", 0);
   check_run(TRACE BALL SMALL "-o a.exr --save-map m.exr --merge p2.ck p0.ck p1.ck", 0);
   assert_true(same_pixels("whole.exr", "a.exr") && same_pixels("whole-map.exr", "m.exr"));
@@ -296,9 +280,7 @@ TEST(parts) {
 }
 
 static void refuse_parts(const char *arguments, int code, const char *part) {
-  char line[512];
-  snprintf(line, sizeof line, TRACE BALL SMALL "%s", arguments);
-  check_run(line, code);
+  check_run(printed(TRACE BALL SMALL "%s", arguments), code);
   assert_contains(run_errors, part);
 }
 
@@ -322,10 +304,9 @@ TEST(wrong_parts) {
   /* the last part is missing */
   check_run(TRACE BALL SMALL "--spp 3 --passes 0:1 --checkpoint r0.ck", 0);
   check_run(TRACE BALL SMALL "--spp 3 --passes 1:2 --checkpoint r1.ck", 0);
-  refuse_parts(
-      "-o c.exr --merge r0.ck r1.ck", 1,
-      "pass 2 is missing: there are to be 3, as r0.ck says; trace them, or take what is there "
-      "with --incomplete");
+  refuse_parts("-o c.exr --merge r0.ck r1.ck", 1,
+               "pass 2 is missing: there are to be 3, as r0.ck says; trace them, or take what is "
+               "there with --incomplete");
   refuse_parts("-o c.exr --spp 2 --merge q0.ck", 1, "pass 1 is missing: there are to be 2, as is");
   check_run(TRACE BALL SMALL "-o c.exr --merge r0.ck r1.ck --incomplete", 0);
   assert_contains(run_errors, "note: pass 2 is missing");

@@ -12,7 +12,7 @@ TEST(a_group_as_text) {
 }
 
 TEST(a_group_as_json) {
-  cJSON *json = run_json("\"$abbe\" validate --only prism --json", 0);
+  HELD(cJSON, json) = run_json("\"$abbe\" validate --only prism --json", 0);
   const cJSON *list = cJSON_GetObjectItem(json, "answers"), *row = cJSON_GetArrayItem(list, 1);
   assert_int_equal(cJSON_GetArraySize(list), 13);
   assert_int_equal(cJSON_GetObjectItem(json, "passed")->valueint, 13);
@@ -23,7 +23,6 @@ TEST(a_group_as_json) {
   assert_near(cJSON_GetObjectItem(row, "error")->valuedouble, traced - exact, 1e-12);
   assert_true(cJSON_IsTrue(cJSON_GetObjectItem(row, "passed")));
   assert_true(strlen(cJSON_GetObjectItem(row, "reason")->valuestring) > 0);
-  cJSON_Delete(json);
 }
 
 /* Whole runs, small: their tolerances widen with their noise, and would fail where it tells
@@ -49,8 +48,7 @@ TEST(noise_is_no_agreement) {
 
 TEST(errors_are_drawn) {
   assert_int_equal(
-      run_line("\"$abbe\" validate --only slab --chart c.svg && grep -c '<svg' c.svg && "
-               "rm c.svg"),
+      run_line("\"$abbe\" validate --only slab --chart c.svg && grep -c '<svg' c.svg && rm c.svg"),
       0);
   assert_true(run_refuses("\"$abbe\" validate --chart c.gif", 2, "'c.gif' wants a name"));
 }

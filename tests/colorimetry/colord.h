@@ -11,8 +11,8 @@
  * script/bootstrap does. */
 static size_t colord_read(const char *name, double *values, size_t max, double *start,
                           double *end) {
-  char path[256], word[256];
-  snprintf(path, sizeof path, "/usr/share/colord/%s", name);
+  char word[256];
+  const char *path = printed("/usr/share/colord/%s", name);
   FILE *file = fopen(path, "r");
   if (file == NULL) fail_msg("%s is missing; script/bootstrap installs it (colord-data)", path);
   size_t count = 0;

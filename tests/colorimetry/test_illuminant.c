@@ -20,13 +20,12 @@ static void compare(const char *name, const char *file, double tolerance) {
   static double cie[600];
   double start = 0, end = 0;
   size_t count = colord_read(file, cie, 600, &start, &end);
-  abbe_illuminant light = make(name);
+  OWNED(abbe_illuminant, light) = make(name);
   for (size_t i = 0; i < count; i++) {
     double nm = start + (end - start) * (double)i / (double)(count - 1);
     double ours = abbe_illuminant_power(&light, nm) / 100;
     if (fabs(ours - cie[i]) > tolerance) fail_msg("%s at %g nm: %g, %g", name, nm, ours, cie[i]);
   }
-  abbe_illuminant_free(&light);
 }
 
 TEST(d65_is_the_cies) {
@@ -67,12 +66,11 @@ static char *write_text(const char *text) {
 
 TEST(a_file_of_ones_own) {
   char *path = write_text("# a lamp\n400, 0\r\n\n 500;10 # middle\n600\t20");
-  abbe_illuminant light = make(path);
+  OWNED(abbe_illuminant, light) = make(path);
   assert_int_equal(light.kind, ABBE_ILLUMINANT_TABULATED);
   assert_true(fabs(abbe_illuminant_power(&light, 550) - 15) < 1e-12);
   assert_true(abbe_illuminant_power(&light, 399) == 0);
   assert_true(abbe_illuminant_power(&light, 601) == 0);
-  abbe_illuminant_free(&light);
   abbe_illuminant_free(&light);
   unlink(path);
 }
@@ -88,10 +86,9 @@ TEST(files_in_other_dresses) {
   };
   for (size_t i = 0; i < sizeof dresses / sizeof dresses[0]; i++) {
     char *path = write_text(dresses[i]);
-    abbe_illuminant light = make(path);
+    OWNED(abbe_illuminant, light) = make(path);
     assert_true(fabs(abbe_illuminant_power(&light, 550) - 15) < 1e-12);
     assert_true(abbe_illuminant_power(&light, 399) == 0);
-    abbe_illuminant_free(&light);
     unlink(path);
   }
 }
@@ -185,7 +182,7 @@ static void colour_by_sums(const abbe_illuminant *light, double xy[2]) {
 /* And the whole integral, in which lamps' lines are triangles, is near. */
 TEST(published_colours) {
   for (size_t i = 0; i < sizeof published / sizeof *published; i++) {
-    abbe_illuminant light = make(published[i].name);
+    OWNED(abbe_illuminant, light) = make(published[i].name);
     assert_string_equal(abbe_illuminant_name(&light), published[i].name);
     double xy[2], xyz[3];
     colour_by_sums(&light, xy);
@@ -195,7 +192,6 @@ TEST(published_colours) {
     abbe_weights_band_xyz(&light, 360, 830, 360, 830, xyz);
     assert_near(xyz[0] / (xyz[0] + xyz[1] + xyz[2]), published[i].x, 4e-4);
     assert_near(xyz[1] / (xyz[0] + xyz[1] + xyz[2]), published[i].y, 4e-4);
-    abbe_illuminant_free(&light);
   }
 }
 
@@ -207,12 +203,12 @@ TEST(daylight_of_a_temperature) {
     double off;
   } same[] = {{"D6504", "D65", 0.05}, {"D5003", "D50", 0.05}};
   for (size_t i = 0; i < 2; i++) {
-    abbe_illuminant one = make(same[i].series), other = make(same[i].table);
+    OWNED(abbe_illuminant, one) = make(same[i].series);
+    abbe_illuminant other = make(same[i].table);
     for (double nm = 300; nm <= 830; nm += 10)
       assert_near(abbe_illuminant_power(&one, nm), abbe_illuminant_power(&other, nm), same[i].off);
-    abbe_illuminant_free(&one);
   }
-  abbe_illuminant d55 = make("d55"), d75 = make("D75"), whole = make("D7504");
+  OWNED(abbe_illuminant, d55) = make("d55"), d75 = make("D75"), whole = make("D7504");
   double xy[2];
   colour_by_sums(&d55, xy);
   assert_near(xy[0], 0.33242, 2e-5);
@@ -222,14 +218,13 @@ TEST(daylight_of_a_temperature) {
   assert_near(xy[1], 0.31485, 2e-5);
   assert_string_equal(abbe_illuminant_name(&d55), "D55");
   assert_near(abbe_illuminant_power(&d75, 400), abbe_illuminant_power(&whole, 400), 0.01);
-  abbe_illuminant_free(&d55);
-  abbe_illuminant_free(&d75);
-  abbe_illuminant_free(&whole);
 }
 
 /* A is a black body of 2848 K by the c2 of its time: 2855.5 K by today's. */
 TEST(black_bodies) {
-  abbe_illuminant body = make("2856k"), a = make("A"), cold = make("1000K"), hot = make("1000000K");
+  OWNED(abbe_illuminant, body) = make("2856k");
+  abbe_illuminant a = make("A");
+  OWNED(abbe_illuminant, cold) = make("1000K"), hot = make("1000000K");
   for (double nm = 380; nm <= 780; nm += 5)
     assert_near(abbe_illuminant_power(&body, nm) / abbe_illuminant_power(&a, nm), 1, 1e-3);
   for (double nm = 360.25; nm < 829; nm += 0.5) {
@@ -238,9 +233,6 @@ TEST(black_bodies) {
     assert_near(abbe_illuminant_power(&hot, nm) / abbe_colour_temperature_planck(1e6, nm), 1, 1e-6);
   }
   assert_string_equal(abbe_illuminant_name(&body), "2856K");
-  abbe_illuminant_free(&body);
-  abbe_illuminant_free(&cold);
-  abbe_illuminant_free(&hot);
 }
 
 /* All of a line is in its band, wherever the bands' edges are, at the colour of its wavelength. */
@@ -253,7 +245,7 @@ TEST(lines_are_exact_and_not_binned) {
                {"hydrogen", 5, 410.174, 656.2852}, {"632.8nm", 1, 632.8, 632.8},
                {"line-d", 1, 587.5618, 587.5618},  {"line-F'", 1, 479.9914, 479.9914}};
   for (size_t i = 0; i < sizeof lamps / sizeof *lamps; i++) {
-    abbe_illuminant light = make(lamps[i].name);
+    OWNED(abbe_illuminant, light) = make(lamps[i].name);
     double nm[ABBE_ILLUMINANT_MOST_LINES], xyz[3], bar[3];
     assert_int_equal(abbe_illuminant_lines(&light, nm), lamps[i].lines);
     assert_near(nm[0], lamps[i].first_nm, 0);
@@ -264,15 +256,14 @@ TEST(lines_are_exact_and_not_binned) {
       abbe_observer_xyz(nm[0], bar);
       for (int k = 0; k < 3; k++) assert_near(xyz[k], bar[k] / bar[1], 1e-6);
     }
-    abbe_illuminant_free(&light);
   }
-  abbe_illuminant sodium = make("sodium"), d65 = {0}, bad = {0};
+  OWNED(abbe_illuminant, sodium) = make("sodium");
+  abbe_illuminant d65 = {0}, bad = {0};
   double nm[ABBE_ILLUMINANT_MOST_LINES];
   assert_int_equal(abbe_illuminant_lines(&d65, nm), 0);
   assert_near(abbe_weights_band_power(&sodium, 380, 780, 589, 589.1), 0, 0);
   assert_near(abbe_weights_band_power(&sodium, 380, 780, 588.99, 589), 2.0 / 3, 1e-9);
   assert_near(abbe_weights_band_power(&sodium, 380, 780, 589.59, 780), 1.0 / 3, 1e-9);
-  abbe_illuminant_free(&sodium);
   REFUSED(ABBE_INVALID_ARGUMENT, "a line lies from 360 to 830 nm",
           abbe_illuminant_make("1064nm", &bad, &error));
   REFUSED(ABBE_NOT_FOUND, "did you mean 'sodium'?", abbe_illuminant_make("sodum", &bad, &error));
@@ -282,16 +273,13 @@ TEST(lines_are_exact_and_not_binned) {
 TEST(every_listed_name_is_a_light) {
   size_t count = 0;
   for (const char *name; (name = abbe_illuminant_listed(count)) != NULL; count++) {
-    abbe_illuminant light = make(name);
+    OWNED(abbe_illuminant, light) = make(name);
     assert_true(abbe_illuminant_is_name(name));
     double nm[ABBE_ILLUMINANT_MOST_LINES];
     const size_t lines = abbe_illuminant_lines(&light, nm);
     assert_true(abbe_illuminant_power(&light, lines > 0 ? nm[0] : 550) > 0);
-    abbe_illuminant_free(&light);
   }
   assert_int_equal(count, 29);
-  abbe_illuminant f11 = make("fl11"), same = make("F11");
+  OWNED(abbe_illuminant, f11) = make("fl11"), same = make("F11");
   assert_near(abbe_illuminant_power(&f11, 545), abbe_illuminant_power(&same, 545), 0);
-  abbe_illuminant_free(&f11);
-  abbe_illuminant_free(&same);
 }

@@ -96,10 +96,10 @@ TEST(matrices_add_up) {
       for (size_t n = 0; n < sizeof counts / sizeof *counts; n++) {
         const abbe_illuminant light = {.kind = (abbe_illuminant_kind)kind};
         const abbe_upsampling u = make(&light, 380, 780);
-        OWNED(abbe_wavelengths, samples);
-        OWNED(abbe_weights, weights);
-        OK(abbe_wavelengths_make(counts[n], 380, 780, &samples, &error));
-        OK(abbe_weights_make(&samples, &light, (abbe_rgb_space)space, &weights, &error));
+        MADE(abbe_wavelengths, samples,
+             abbe_wavelengths_make(counts[n], 380, 780, &samples, &error));
+        MADE(abbe_weights, weights,
+             abbe_weights_make(&samples, &light, (abbe_rgb_space)space, &weights, &error));
         double(*matrix)[9] = calloc(counts[n], sizeof *matrix), sum[9] = {0}, from_xyz[9];
         assert_non_null(matrix);
         for (size_t i = 0; i < counts[n]; i++) {

@@ -6,14 +6,13 @@
 
 static abbe_weights make(size_t count, double min, double max, abbe_illuminant_kind kind,
                          abbe_rgb_space space) {
-  abbe_wavelengths samples = {0};
+  OWNED(abbe_wavelengths, samples) = {0};
   abbe_weights weights = {0};
   abbe_error error = {0};
   const abbe_illuminant light = {.kind = kind};
   if (abbe_wavelengths_make(count, min, max, &samples, &error) != ABBE_OK ||
       abbe_weights_make(&samples, &light, space, &weights, &error) != ABBE_OK)
     fail_msg("%s", error.text);
-  abbe_wavelengths_free(&samples);
   return weights;
 }
 
@@ -27,21 +26,21 @@ TEST(whites) {
                 {ABBE_ILLUMINANT_D50, 0.34567, 0.35850},
                 {ABBE_ILLUMINANT_E, 1.0 / 3, 1.0 / 3}};
   for (int i = 0; i < 4; i++) {
-    abbe_weights w = make(1, 360, 830, whites[i].kind, ABBE_RGB_SPACE_XYZ);
+    OWNED(abbe_weights, w) = make(1, 360, 830, whites[i].kind, ABBE_RGB_SPACE_XYZ);
     double total = w.sum[0] + w.sum[1] + w.sum[2];
     double x = w.sum[0] / total, y = w.sum[1] / total;
     if (fabs(x - whites[i].x) > 5e-5 || fabs(y - whites[i].y) > 5e-5)
       fail_msg("white %d: %.6f %.6f", i, x, y);
-    abbe_weights_free(&w);
   }
 }
 
 TEST(any_count_adds_up_to_the_same_white) {
   static const size_t counts[] = {1, 2, 3, 7, 21, 81, 100, 401, 999, ABBE_WAVELENGTHS_MAX_COUNT};
   for (int kind = 0; kind < ABBE_ILLUMINANT_TABULATED; kind++) {
-    abbe_weights one = make(1, 380, 780, (abbe_illuminant_kind)kind, ABBE_RGB_SPACE_XYZ);
+    OWNED(abbe_weights, one) = make(1, 380, 780, (abbe_illuminant_kind)kind, ABBE_RGB_SPACE_XYZ);
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
-      abbe_weights w = make(counts[i], 380, 780, (abbe_illuminant_kind)kind, ABBE_RGB_SPACE_XYZ);
+      OWNED(abbe_weights, w) =
+          make(counts[i], 380, 780, (abbe_illuminant_kind)kind, ABBE_RGB_SPACE_XYZ);
       assert_int_equal(w.count, counts[i]);
       assert_true(fabs(w.sum[1] - 1) <= 4.5e-16);
       for (int k = 0; k < 3; k++) {
@@ -51,9 +50,7 @@ TEST(any_count_adds_up_to_the_same_white) {
       }
       for (size_t j = 0; j < w.count; j++)
         for (int k = 0; k < 3; k++) assert_true(w.weight[j][k] >= 0);
-      abbe_weights_free(&w);
     }
-    abbe_weights_free(&one);
   }
 }
 
@@ -95,11 +92,10 @@ TEST(odd_tilings_add_up) {
 TEST(a_range_serves_many_bands) {
   for (int kind = 0; kind < ABBE_ILLUMINANT_TABULATED; kind++) {
     const abbe_illuminant light = {.kind = (abbe_illuminant_kind)kind};
-    abbe_weights samples = make(7, 380, 780, light.kind, ABBE_RGB_SPACE_XYZ);
-    OWNED(abbe_wavelengths, w) = {0};
+    OWNED(abbe_weights, samples) = make(7, 380, 780, light.kind, ABBE_RGB_SPACE_XYZ);
     abbe_weights_range range;
     double sum[3] = {0}, alone[3], xyz[3];
-    OK(abbe_wavelengths_make(7, 380, 780, &w, &error));
+    MADE(abbe_wavelengths, w, abbe_wavelengths_make(7, 380, 780, &w, &error));
     abbe_weights_range_make(&light, 380, 780, &range);
     assert_ptr_equal(range.illuminant, &light);
     assert_true(range.min_nm == 380 && range.max_nm == 780 && range.white_y > 0);
@@ -113,7 +109,6 @@ TEST(a_range_serves_many_bands) {
       }
     }
     assert_true(fabs(sum[1] - 1) < 1e-14);
-    abbe_weights_free(&samples);
   }
 }
 
@@ -173,8 +168,8 @@ TEST(the_share_of_power) {
 
 /* Seven nodes taken pointwise tint the white; the bands do not. */
 TEST(pointwise_nodes_tint_the_white) {
-  abbe_weights exact = make(1, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_XYZ);
-  abbe_weights bands = make(7, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_XYZ);
+  OWNED(abbe_weights, exact) = make(1, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_XYZ);
+  OWNED(abbe_weights, bands) = make(7, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_XYZ);
   const abbe_illuminant light = {0};
   double nodes[3] = {0};
   for (int i = 0; i < 7; i++) {
@@ -190,8 +185,6 @@ TEST(pointwise_nodes_tint_the_white) {
   double tint = abbe_difference_ciede2000(tinted, white);
   if (!(tint > 10)) fail_msg("seven pointwise nodes: %g", tint);
   assert_true(abbe_difference_ciede2000(banded, white) < 1e-10);
-  abbe_weights_free(&exact);
-  abbe_weights_free(&bands);
 }
 
 /* The table's white (0.31272, 0.32903) is not the (0.3127, 0.3290) that the RGB spaces are defined
@@ -199,16 +192,15 @@ TEST(pointwise_nodes_tint_the_white) {
 TEST(d65_is_white_in_rgb) {
   static const abbe_rgb_space spaces[] = {ABBE_RGB_SPACE_REC709, ABBE_RGB_SPACE_ACESCG};
   for (int s = 0; s < 2; s++) {
-    abbe_weights w = make(7, 380, 780, ABBE_ILLUMINANT_D65, spaces[s]);
+    OWNED(abbe_weights, w) = make(7, 380, 780, ABBE_ILLUMINANT_D65, spaces[s]);
     for (int k = 0; k < 3; k++)
       if (fabs(w.sum[k] - 1) > 6e-4) fail_msg("space %d: component %d is %.6f", s, k, w.sum[k]);
-    abbe_weights_free(&w);
   }
 }
 
 TEST(rgb_keeps_negatives_and_is_the_matrix_times_xyz) {
-  abbe_weights xyz = make(21, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_XYZ);
-  abbe_weights rgb = make(21, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_REC709);
+  OWNED(abbe_weights, xyz) = make(21, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_XYZ);
+  OWNED(abbe_weights, rgb) = make(21, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_REC709);
   double matrix[9], least = 0;
   abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, matrix);
   for (int i = 0; i < 21; i++) {
@@ -220,8 +212,6 @@ TEST(rgb_keeps_negatives_and_is_the_matrix_times_xyz) {
     }
   }
   assert_true(least < -0.01);
-  abbe_weights_free(&xyz);
-  abbe_weights_free(&rgb);
 }
 
 TEST(a_table_with_knots_of_its_own) {
@@ -238,10 +228,9 @@ TEST(a_table_with_knots_of_its_own) {
 }
 
 TEST(no_light_in_range) {
-  OWNED(abbe_wavelengths, samples) = {0};
   OWNED(abbe_weights, weights) = {0};
   const abbe_illuminant light = {0};
-  OK(abbe_wavelengths_make(3, 900, 1000, &samples, &error));
+  MADE(abbe_wavelengths, samples, abbe_wavelengths_make(3, 900, 1000, &samples, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "900",
           abbe_weights_make(&samples, &light, ABBE_RGB_SPACE_XYZ, &weights, &error));
   assert_null(weights.weight);
@@ -267,13 +256,12 @@ TEST(other_observers) {
             {ABBE_OBSERVER_CIE_1964, ABBE_ILLUMINANT_E, {1.0 / 3, 1.0 / 3}, 2e-4},
             {ABBE_OBSERVER_CIE_2015_2, ABBE_ILLUMINANT_E, {1.0 / 3, 1.0 / 3}, 2e-4},
             {ABBE_OBSERVER_CIE_2015_10, ABBE_ILLUMINANT_E, {1.0 / 3, 1.0 / 3}, 2e-4}};
-  OWNED(abbe_wavelengths, samples);
-  OK(abbe_wavelengths_make(9, 380, 780, &samples, &error));
+  MADE(abbe_wavelengths, samples, abbe_wavelengths_make(9, 380, 780, &samples, &error));
   for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
     const abbe_illuminant light = {.kind = of[i].kind};
-    OWNED(abbe_weights, weights);
-    OK(abbe_weights_make_by(of[i].observer, &samples, &light, ABBE_RGB_SPACE_XYZ, &weights,
-                            &error));
+    MADE(abbe_weights, weights,
+         abbe_weights_make_by(of[i].observer, &samples, &light, ABBE_RGB_SPACE_XYZ, &weights,
+                              &error));
     const double all = weights.sum[0] + weights.sum[1] + weights.sum[2];
     assert_true(fabs(weights.sum[1] - 1) < 1e-12);
     for (int k = 0; k < 2; k++)

@@ -101,8 +101,8 @@ static void put_scene(text *t, const extreme_scene *s) {
 
 static void put_materials(text *t, const extreme_scene *s) {
   put(t,
-      "materials:\n- {name: glass, model: cauchy, coefficients: [%.17g, %.17g], range_nm: "
-      "[300, 2500], source: made up",
+      "materials:\n- {name: glass, model: cauchy, coefficients: [%.17g, %.17g], range_nm: [300, "
+      "2500], source: made up",
       s->n != 0 ? s->n : 1.5, s->b);
   if (s->attenuation_per_m > 0)
     put(t, ",\n   absorption: {attenuation_per_m: [[300, %.17g], [2500, %.17g]]}",

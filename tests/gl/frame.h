@@ -7,6 +7,8 @@
 
 #include "gl/renderer.h"
 
+HOLDS(abbe_renderer);
+
 /* Small, and complete: every pass runs as it does in a large one. */
 static const abbe_render_desc small_frame = {
     .width = 64, .height = 64, .photons = 64, .map_size = 128};
@@ -62,8 +64,22 @@ static inline abbe_statistics draw_frame(abbe_renderer *renderer) {
   return statistics;
 }
 
-static inline void read_picture(abbe_renderer *renderer, bool aovs, abbe_image *out) {
-  OK(abbe_renderer_read(renderer, aovs, out, &error));
+static inline abbe_renderer *drawn_renderer(const abbe_scene *scene, const abbe_render_desc *desc) {
+  abbe_renderer *renderer = make_renderer(scene, desc);
+  draw_frame(renderer);
+  return renderer;
+}
+
+static inline abbe_image read_picture(abbe_renderer *renderer, bool aovs) {
+  abbe_image image = {0};
+  OK(abbe_renderer_read(renderer, aovs, &image, &error));
+  return image;
+}
+static inline abbe_image picture_of(abbe_renderer *renderer) {
+  return read_picture(renderer, false);
+}
+static inline abbe_image aovs_of(abbe_renderer *renderer) {
+  return read_picture(renderer, true);
 }
 
 static inline void assert_finite(const abbe_image *image) {
@@ -74,19 +90,18 @@ static inline void assert_finite(const abbe_image *image) {
 /* One frame of a scene that is given as text. */
 static inline abbe_statistics draw_text(const char *text, const abbe_render_desc *desc,
                                         abbe_image *out) {
-  abbe_scene scene;
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, desc);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, desc);
   const abbe_statistics statistics = draw_frame(renderer);
-  read_picture(renderer, false, out);
+  *out = picture_of(renderer);
   assert_finite(out);
-  abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
   return statistics;
 }
 
-static inline void read_map(abbe_renderer *renderer, size_t light, abbe_image *out) {
-  OK(abbe_renderer_read_map(renderer, light, true, out, &error));
+static inline abbe_image map_of(abbe_renderer *renderer, size_t light) {
+  abbe_image map = {0};
+  OK(abbe_renderer_read_map(renderer, light, true, &map, &error));
+  return map;
 }
 
 /* The map of one frame of a scene. */
@@ -94,10 +109,9 @@ static inline void make_map(const abbe_scene *scene, const abbe_render_desc *des
                             abbe_image *out) {
   abbe_scene aside = *scene;
   look_aside(&aside);
-  abbe_renderer *renderer = make_renderer(&aside, desc);
+  HELD(abbe_renderer, renderer) = make_renderer(&aside, desc);
   draw_frame(renderer);
-  read_map(renderer, 0, out);
-  abbe_renderer_free(renderer);
+  *out = map_of(renderer, 0);
 }
 
 static inline void assert_same_pixels(const abbe_image *a, const abbe_image *b) {

@@ -65,13 +65,8 @@ static inline GLuint glsl_make(const abbe_gl *gl, const char *text) {
       "  uint i = gl_GlobalInvocationID.x;\n"
       "  if (i < harness_count) harness_out[i] = f(harness_in[2u * i], harness_in[2u * i + 1u]);\n"
       "}\n";
-  char whole[4096];
   GLuint program = 0;
-  abbe_error error = {0};
-  snprintf(whole, sizeof whole, "%s%s", text, harness);
-  abbe_result result = abbe_program_make_compute_text(gl, whole, NULL, &program, &error);
-  if (result != ABBE_OK) print_error("%s\n", error.text);
-  assert_int_equal(result, ABBE_OK);
+  OK(abbe_program_make_compute_text(gl, printed("%s%s", text, harness), NULL, &program, &error));
   gl->UseProgram(program);
   return program;
 }

@@ -33,9 +33,7 @@ static const char CARDS[] =
     "   transform: [{translate: [0.5, 0, 0.05]}]}\n";
 
 static void load_cards(const char *ambient, const char *one, const char *two, abbe_scene *scene) {
-  char text[1500];
-  snprintf(text, sizeof text, CARDS, ambient, one, two);
-  load_text(text, scene);
+  *scene = scene_of(printed(CARDS, ambient, one, two));
 }
 
 static void make_bands(const abbe_scene *scene, const abbe_render_desc *desc, size_t bands,
@@ -46,11 +44,10 @@ static void make_bands(const abbe_scene *scene, const abbe_render_desc *desc, si
 static void make_picture(const abbe_scene *scene, abbe_rgb_space space, abbe_image *out) {
   abbe_render_desc desc = frame;
   desc.space = space;
-  abbe_renderer *renderer = NULL;
+  HELD(abbe_renderer, renderer) = NULL;
   OK(abbe_renderer_make(context, scene, &desc, &renderer, &error));
   OK(abbe_renderer_frame(renderer, NULL, NULL, NULL, &error));
   OK(abbe_renderer_read(renderer, false, out, &error));
-  abbe_renderer_free(renderer);
 }
 
 /* The bands through the observer. */
@@ -80,9 +77,8 @@ GROUP(setup, teardown);
 TEST(cards_in_bands) {
   const abbe_illuminant d65 = {0};
   const size_t p = (SIDE - 3) * SIDE + 2; /* shows the grey */
-  OWNED(abbe_scene, scene);
-  abbe_image bands, sum, picture;
-  load_cards("0", "", "", &scene);
+  OWNED(abbe_image, bands) = {0}, sum = {0}, picture = {0};
+  FILLED(abbe_scene, scene, load_cards("0", "", "", &scene));
   make_bands(&scene, &frame, BANDS, &bands);
   assert_string_equal(bands.channel[0], "S0.400,000000nm");
   make_picture(&scene, ABBE_RGB_SPACE_XYZ, &picture);
@@ -98,9 +94,6 @@ TEST(cards_in_bands) {
   }
   print_message("cards: bands' sum and the picture are apart by %.5f\n", apart(&sum, &picture));
   assert_true(apart(&sum, &picture) < 0.01);
-  abbe_image_free(&sum);
-  abbe_image_free(&picture);
-  abbe_image_free(&bands);
 }
 
 static void trace_bands(const abbe_scene *scene, int passes, abbe_image *out) {
@@ -134,13 +127,10 @@ static double compare_band(const abbe_image *bands, const abbe_image *traced, si
 /* Two illuminants, ambient light, colours: the tracer's bands of the same scene. It gives each of
  * its 4096 steps of wavelength, 0.1 nm or so, to one band alone: at most 2 x 0.1 nm of 40 nm. */
 TEST(cards_against_the_tracer) {
-  OWNED(abbe_scene, scene);
-  OWNED(abbe_image, bands);
-  OWNED(abbe_image, traced);
   double ratio;
-  load_cards("1", "", ", illuminant: A", &scene);
-  make_bands(&scene, &frame, BANDS, &bands);
-  trace_bands(&scene, 16, &traced);
+  FILLED(abbe_scene, scene, load_cards("1", "", ", illuminant: A", &scene));
+  FILLED(abbe_image, bands, make_bands(&scene, &frame, BANDS, &bands));
+  FILLED(abbe_image, traced, trace_bands(&scene, 16, &traced));
   for (size_t i = 0; i < BANDS; i++) {
     compare_band(&bands, &traced, i, &ratio);
     assert_near(ratio, 1, 5e-3);
@@ -150,13 +140,10 @@ TEST(cards_against_the_tracer) {
 /* A prism spreads each band over many pixels: light must lie there by its power. By what the eye
  * makes of it, the first band would be off by three quarters. */
 TEST(a_prism_against_the_tracer) {
-  OWNED(abbe_scene, scene);
-  OWNED(abbe_image, bands);
-  OWNED(abbe_image, traced);
   double ratio;
-  load_shipped("prism", &scene);
-  make_bands(&scene, &frame, BANDS, &bands);
-  trace_bands(&scene, 12, &traced);
+  OWNED(abbe_scene, scene) = shipped_scene("prism");
+  FILLED(abbe_image, bands, make_bands(&scene, &frame, BANDS, &bands));
+  FILLED(abbe_image, traced, trace_bands(&scene, 12, &traced));
   for (size_t i = 0; i < BANDS; i++) {
     const double off = compare_band(&bands, &traced, i, &ratio);
     print_message("%s: over traced %.4f, apart by %.4f\n", bands.channel[i], ratio, off);
@@ -177,9 +164,8 @@ TEST(sums_are_pictures) {
   } scenes[] = {{"gem", 10, 0.08}, {"prism", 20, 0.06}, {"sphere", 10, 0.05}};
   const abbe_illuminant d65 = {0};
   for (size_t i = 0; i < (all_cases() ? 3 : 1); i++) {
-    OWNED(abbe_scene, scene);
-    abbe_image bands, sum, picture;
-    load_shipped(scenes[i].name, &scene);
+    OWNED(abbe_image, bands) = {0}, sum = {0}, picture = {0};
+    OWNED(abbe_scene, scene) = shipped_scene(scenes[i].name);
     make_bands(&scene, &frame, scenes[i].bands, &bands);
     make_picture(&scene, ABBE_RGB_SPACE_XYZ, &picture);
     sum_bands(&bands, &d65, ABBE_RGB_SPACE_XYZ, &sum);
@@ -192,9 +178,6 @@ TEST(sums_are_pictures) {
                   total[0] / total[1], apart(&sum, &picture));
     assert_near(total[0] / total[1], 1, 0.01);
     assert_true(apart(&sum, &picture) < scenes[i].limit);
-    abbe_image_free(&sum);
-    abbe_image_free(&picture);
-    abbe_image_free(&bands);
   }
 }
 
@@ -205,10 +188,9 @@ static bool stop_now(void *user, double done) {
 }
 
 TEST(refusals_and_cancelling) {
-  OWNED(abbe_scene, scene);
   abbe_image bands;
   double least = 1;
-  load_cards("0", "", "", &scene);
+  FILLED(abbe_scene, scene, load_cards("0", "", "", &scene));
   REFUSED(ABBE_INVALID_ARGUMENT, "1 to 256",
           abbe_band_picture_make(context, &scene, &frame, 0, NULL, NULL, &bands, &error));
   abbe_render_desc thesis = frame;
@@ -226,9 +208,8 @@ TEST(a_sodium_lamp_has_no_colour_but_one) {
   static const char text[] =
       CAMERA "lights:\n- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: 1,\n"
              "   illuminant: sodium}\n" FLOOR BALL("crown");
-  abbe_scene scene;
-  abbe_image bands, picture, traced;
-  load_text(text, &scene);
+  OWNED(abbe_image, bands) = {0}, picture = {0}, traced = {0};
+  OWNED(abbe_scene, scene) = scene_of(text);
   const size_t lit = 5; /* 580 to 620 nm */
   double white[3], sum[3] = {0};
   abbe_weights_white(ABBE_OBSERVER_CIE_1931, &scene.light[0].illuminant, 380, 780, white);
@@ -252,8 +233,4 @@ TEST(a_sodium_lamp_has_no_colour_but_one) {
                 sum[2] / sum[0]);
   assert_near(sum[1] / sum[0], 1, 2e-3);
   assert_near(sum[2] / sum[0], 1, 0.02);
-  abbe_image_free(&traced);
-  abbe_image_free(&picture);
-  abbe_image_free(&bands);
-  abbe_scene_free(&scene);
 }

@@ -16,20 +16,17 @@ static void draw(const abbe_scene *scene, abbe_profile profile, abbe_image *pict
                                  .exits = 1,
                                  .space = ABBE_RGB_SPACE_XYZ,
                                  .fill = ABBE_FILL_NONE};
-  abbe_renderer *renderer = make_renderer(scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, picture);
-  read_map(renderer, 0, map);
-  abbe_renderer_free(renderer);
+  HELD(abbe_renderer, renderer) = drawn_renderer(scene, &desc);
+  *picture = picture_of(renderer);
+  *map = map_of(renderer, 0);
 }
 
 GROUP(make_context, free_context);
 
 /* A pane turns no light: both profiles hold the lamp's power through it, less two reflections. */
 TEST(what_arrives_is_what_was_sent) {
-  OWNED(abbe_scene, scene) = {0};
-  abbe_image own_picture, own_map, picture, map;
-  load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
+  OWNED(abbe_image, own_picture) = {0}, own_map = {0}, picture = {0}, map = {0};
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR PANE("flat"));
   draw(&scene, ABBE_PROFILE_DEFAULT, &own_picture, &own_map);
   draw(&scene, ABBE_PROFILE_THESIS_CIE, &picture, &map);
   /* Power in the solid angle of a square of half side a at distance h, less two reflections of 4 %
@@ -42,17 +39,12 @@ TEST(what_arrives_is_what_was_sent) {
   /* White light stays white. */
   for (size_t c = 0; c < 3; c += 2)
     assert_near(image_sum(&map, c) / sum, image_sum(&own_map, c) / own, 1e-4);
-  abbe_image_free(&own_picture);
-  abbe_image_free(&own_map);
-  abbe_image_free(&picture);
-  abbe_image_free(&map);
 }
 
 /* A floor in the open has the same radiance, pixel by pixel, in the default profile's own units. */
 TEST(light_in_the_open_is_the_same) {
-  OWNED(abbe_scene, scene) = {0};
-  abbe_image own_picture, own_map, picture, map;
-  load_text(CAMERA "ambient: 0.3\n" POINT_LIGHT FLOOR PANE("flat"), &scene);
+  OWNED(abbe_image, own_picture) = {0}, own_map = {0}, picture = {0}, map = {0};
+  OWNED(abbe_scene, scene) = scene_of(CAMERA "ambient: 0.3\n" POINT_LIGHT FLOOR PANE("flat"));
   draw(&scene, ABBE_PROFILE_DEFAULT, &own_picture, &own_map);
   draw(&scene, ABBE_PROFILE_THESIS_CIE, &picture, &map);
   assert_string_equal(picture.channel[0], "X");
@@ -65,8 +57,4 @@ TEST(light_in_the_open_is_the_same) {
   /* The rest is the pane and its shadow; what it mirrors goes up and away. */
   assert_true(lit > 1000);
   assert_true(same > 3 * lit / 5);
-  abbe_image_free(&own_picture);
-  abbe_image_free(&own_map);
-  abbe_image_free(&picture);
-  abbe_image_free(&map);
 }

@@ -52,10 +52,9 @@ static void middles(const abbe_image *map, const abbe_map_layout *layout, double
 }
 
 static void assert_parted(const abbe_scene *scene, const abbe_render_desc *desc) {
-  OWNED(abbe_image, map) = {0};
   double aside[3], at[3][2];
   moved_aside(scene, aside);
-  make_map(scene, desc, &map);
+  FILLED(abbe_image, map, make_map(scene, desc, &map));
   middles(&map, desc->map_layout, at);
   const double texel = abbe_map_layout_texel_size(desc->map_layout, 0, map.width, 0);
   const double widest = fabs(aside[2] - aside[1]) / way;
@@ -77,12 +76,11 @@ GROUP(make_context, free_context);
  * beam's cone, of a degree, makes up to 2 % of that. */
 TEST(colours_part_within_a_texel) {
   static const size_t counts[COUNTS] = {3, 5, 7, 21};
-  OWNED(abbe_scene, scene) = {0};
   abbe_map_layout fitted, even;
   abbe_render_desc desc = small_frame;
   desc.width = desc.height = 16;
   desc.exits = 1;
-  load_text(BEAM_THROUGH_PANE, &scene);
+  OWNED(abbe_scene, scene) = scene_of(BEAM_THROUGH_PANE);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   abbe_renderer_map_layout(renderer, 0, &fitted);
   abbe_renderer_free(renderer);

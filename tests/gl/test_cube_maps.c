@@ -28,7 +28,7 @@ static void load_balls(const place *ball, size_t count, double turn_degrees, con
                      "[{translate: [%.12g, %.12g, %.12g]}], material: flat}\n",
                      i, ball[i].radius, c * ball[i].at[0] - s * ball[i].at[1],
                      s * ball[i].at[0] + c * ball[i].at[1], 0.2 + ball[i].at[2]);
-  load_text(text, scene);
+  *scene = scene_of(text);
 }
 
 static const char point[] = "kind: point";
@@ -45,11 +45,10 @@ static double light_into(const place *ball, size_t count) {
 
 static abbe_statistics draw(const abbe_scene *scene, const abbe_render_desc *desc, bool cube,
                             abbe_image *picture) {
-  abbe_renderer *renderer = make_renderer(scene, desc);
+  HELD(abbe_renderer, renderer) = make_renderer(scene, desc);
   assert_true(abbe_renderer_plan(renderer)->cubes == cube);
   const abbe_statistics statistics = draw_frame(renderer);
-  if (picture != NULL) read_picture(renderer, desc->aovs, picture);
-  abbe_renderer_free(renderer);
+  if (picture != NULL) *picture = read_picture(renderer, desc->aovs);
   return statistics;
 }
 
@@ -80,8 +79,7 @@ GROUP(make_context, free_context);
 
 TEST(all_light_goes_in_once) {
   for (size_t i = 0; i < sizeof crowds / sizeof *crowds; i++) {
-    OWNED(abbe_scene, scene);
-    load_balls(crowds[i].ball, crowds[i].count, 0, point, &scene);
+    FILLED(abbe_scene, scene, load_balls(crowds[i].ball, crowds[i].count, 0, point, &scene));
     look_aside(&scene);
     const abbe_statistics statistics = draw(&scene, &small_frame, true, NULL);
     const double expected = light_into(crowds[i].ball, crowds[i].count);
@@ -161,7 +159,7 @@ TEST(direct_light_is_whole) {
   static const abbe_model models[] = {ABBE_MODEL_AUTO, ABBE_MODEL_BVH, ABBE_MODEL_LAYERS};
   for (int m = 0; m < (all_cases() ? 3 : 2); m++) {
     abbe_render_desc desc = small_frame;
-    abbe_image both = {0}, one[2] = {{0}, {0}};
+    abbe_image one[2] = {{0}, {0}};
     size_t shaded = 0, wrong = 0;
     desc.aovs = true;
     desc.supersample = desc.adaptive = 1; /* the least of places, not of areas */
@@ -169,7 +167,7 @@ TEST(direct_light_is_whole) {
     desc.width = desc.height = 128;
     abbe_scene scene;
     load_balls(ball, 2, 0, point, &scene);
-    draw(&scene, &desc, true, &both);
+    FILLED(abbe_image, both, draw(&scene, &desc, true, &both));
     abbe_scene_free(&scene);
     for (int i = 0; i < 2; i++) {
       load_balls(&ball[i], 1, 0, point, &scene);
@@ -189,7 +187,6 @@ TEST(direct_light_is_whole) {
     /* Shadows of triangles have the rim that a view's texels give them. */
     assert_true(wrong <= (models[m] == ABBE_MODEL_AUTO ? 0 : shaded / 8));
     for (int i = 0; i < 2; i++) abbe_image_free(&one[i]);
-    abbe_image_free(&both);
   }
 }
 
@@ -197,10 +194,9 @@ TEST(direct_light_is_whole) {
 TEST(the_tracer_agrees) {
   enum { SIDE = 64, BLOCK = 8, BLOCKS = SIDE / BLOCK, PASSES = 12 };
   static const abbe_model models[] = {ABBE_MODEL_AUTO, ABBE_MODEL_BVH, ABBE_MODEL_LAYERS};
-  OWNED(abbe_scene, scene);
-  abbe_image traced, drawn;
+  abbe_image drawn;
   abbe_map_layout layout;
-  load_balls(crowds[1].ball, crowds[1].count, 0, point, &scene);
+  FILLED(abbe_scene, scene, load_balls(crowds[1].ball, crowds[1].count, 0, point, &scene));
   look_aside(&scene);
   static const double down[3] = {0, 0, -1}, up[3] = {0, 1, 0},
                       floor[4][3] = {{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}};
@@ -209,24 +205,23 @@ TEST(the_tracer_agrees) {
   abbe_view_fit(&view, floor, 4);
   abbe_view_pad(&view, 0.01);
   abbe_map_layout_make(&view, &layout);
-  abbe_tracer *tracer = make_tracer(&scene, &(abbe_trace_desc){.no_picture = true,
-                                                               .layout = &layout,
-                                                               .map_width = SIDE,
-                                                               .map_height = SIDE,
-                                                               .photons = 1 << 17,
-                                                               .space = ABBE_RGB_SPACE_XYZ});
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &(abbe_trace_desc){.no_picture = true,
+                                                                     .layout = &layout,
+                                                                     .map_width = SIDE,
+                                                                     .map_height = SIDE,
+                                                                     .photons = 1 << 17,
+                                                                     .space = ABBE_RGB_SPACE_XYZ});
   run_passes(tracer, PASSES);
-  OK(abbe_tracer_map(tracer, &traced, &error));
-  for (int m = 0; m < 3; m++) {
+  MADE(abbe_image, traced, abbe_tracer_map(tracer, &traced, &error));
+  for (int m = 0; m < (all_cases() ? 3 : 2); m++) {
     abbe_render_desc desc = small_frame;
     double block[2][BLOCKS * BLOCKS] = {{0}}, light[2] = {0, 0}, apart = 0;
     desc.photons = 128;
     desc.map_size = SIDE;
     desc.map_layout = &layout;
     desc.model = models[m];
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
-    draw_frame(renderer);
-    read_map(renderer, 0, &drawn);
+    abbe_renderer *renderer = drawn_renderer(&scene, &desc);
+    drawn = map_of(renderer, 0);
     abbe_renderer_free(renderer);
     for (int k = 0; k < 2; k++) {
       const abbe_image *map = k == 0 ? &traced : &drawn;
@@ -245,21 +240,16 @@ TEST(the_tracer_agrees) {
     assert_true(apart < 0.04 * light[0]);
     abbe_image_free(&drawn);
   }
-  abbe_tracer_free(tracer);
-  abbe_image_free(&traced);
 }
 
 TEST(a_cube_has_no_single_layout) {
-  OWNED(abbe_scene, scene);
   abbe_image map = {0};
-  load_balls(crowds[0].ball, crowds[0].count, 0, point, &scene);
+  FILLED(abbe_scene, scene, load_balls(crowds[0].ball, crowds[0].count, 0, point, &scene));
   look_aside(&scene);
-  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
-  draw_frame(renderer);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &small_frame);
   REFUSED(ABBE_UNSUPPORTED, "'lamp' has a cube of maps",
           abbe_renderer_read_map(renderer, 0, true, &map, &error));
   REFUSED(ABBE_UNSUPPORTED, "", abbe_renderer_read_map_bands(renderer, 0, 3, &map, &error));
   /* A further face is no light of the scene. */
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_renderer_read_map(renderer, 1, true, &map, &error));
-  abbe_renderer_free(renderer);
 }

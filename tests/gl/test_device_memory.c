@@ -123,32 +123,25 @@ static const abbe_render_desc before = {
 static const char text[] = CAMERA POINT_LIGHT FLOOR BRICK("crown");
 
 static abbe_image drawn(abbe_renderer *renderer) {
-  abbe_image picture = {0};
   draw_frame(renderer);
-  read_picture(renderer, false, &picture);
-  return picture;
+  return picture_of(renderer);
 }
 
 static void draw_as_made_anew(abbe_renderer *renderer, const abbe_scene *scene,
                               const abbe_render_desc *desc) {
-  abbe_image kept = drawn(renderer);
+  OWNED(abbe_image, kept) = drawn(renderer);
   most_bytes = 0;
-  abbe_renderer *other = make_renderer(scene, desc);
-  abbe_image anew = drawn(other);
+  HELD(abbe_renderer, other) = make_renderer(scene, desc);
+  OWNED(abbe_image, anew) = drawn(other);
   assert_same_pixels(&kept, &anew);
-  abbe_image_free(&kept);
-  abbe_image_free(&anew);
-  abbe_renderer_free(other);
 }
 
 GROUP(make_context, free_context);
 
 /* Another size of everything, within an eighth more than what it was. */
 TEST(a_change_needs_no_room_for_both) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &before);
-  draw_frame(renderer);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  abbe_renderer *renderer = drawn_renderer(&scene, &before);
   const size_t needs = held_bytes;
   abbe_render_desc after = before;
   after.photons = 98;
@@ -164,29 +157,23 @@ TEST(a_change_needs_no_room_for_both) {
 
 /* So of a mesh, which is uploaded before the light's buffers are made. */
 TEST(a_larger_mesh_needs_no_room_beside_them) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_scene, finer) = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
-  load_text(CAMERA POINT_LIGHT FLOOR "- {name: ball, shape: sphere, radius: 0.08, levels: 6, "
-                                     "transform: [{translate: [0, 0, 0.2]}], material: crown}\n",
-            &finer);
-  abbe_renderer *renderer = make_renderer(&scene, &before);
-  draw_frame(renderer);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
+  OWNED(abbe_scene, finer) = scene_of(CAMERA POINT_LIGHT FLOOR
+                                      "- {name: ball, shape: sphere, radius: 0.08, levels: 6, "
+                                      "transform: [{translate: [0, 0, 0.2]}], material: crown}\n");
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &before);
   const size_t mesh = finer.object[1].mesh.face_count * sizeof *finer.object[1].mesh.face;
   abbe_render_desc after = before;
   after.map_size = 512;
   most_bytes = held_bytes + mesh / 2;
   OK(abbe_renderer_change(renderer, &finer, &after, &error));
   draw_as_made_anew(renderer, &finer, &after);
-  abbe_renderer_free(renderer);
 }
 
 /* What does not fit at all is refused, and a smaller change goes on from there. */
 TEST(what_does_not_fit_is_refused) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &before);
-  draw_frame(renderer);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &before);
   abbe_render_desc large = before;
   large.map_size = 1600;
   most_bytes = held_bytes + held_bytes / 8;
@@ -194,7 +181,6 @@ TEST(what_does_not_fit_is_refused) {
   assert_int_equal(abbe_renderer_frame(renderer, NULL, NULL, NULL, NULL), ABBE_INVALID_ARGUMENT);
   OK(abbe_renderer_change(renderer, &scene, &before, &error));
   draw_as_made_anew(renderer, &scene, &before);
-  abbe_renderer_free(renderer);
 }
 
 enum { BUFFER, TEXTURE, LEVELS, MESHES, KINDS, UNUSED_BYTES = 1 << 20 };
@@ -223,12 +209,10 @@ static void give_back(abbe_gpu_scene *scene, int kind, GLuint *out) {
 /* What is not in use gives way to what has no room, and to no other error: neither to one of the
  * allocation itself nor to one that was pending before it, which is told as it is. */
 TEST(only_a_lack_of_memory_is_tried_again) {
-  OWNED(abbe_scene, scene) = {0};
-  abbe_gpu gpu = {0};
   abbe_error why = {0};
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   OK(abbe_context_make_current(context, &error));
-  OK(abbe_gpu_make(abbe_context_gl(context), &gpu, &error));
+  MADE(abbe_gpu, gpu, abbe_gpu_make(abbe_context_gl(context), &gpu, &error));
   abbe_gpu_scene on = {.gpu = &gpu, .local = &scene};
   for (int kind = 0; kind < KINDS; kind++) {
     static const GLenum codes[] = {GL_INVALID_OPERATION, GL_OUT_OF_MEMORY};
@@ -262,5 +246,4 @@ TEST(only_a_lack_of_memory_is_tried_again) {
     give_back(&on, kind, &out);
     abbe_gpu_trim(&gpu);
   }
-  abbe_gpu_free(&gpu);
 }

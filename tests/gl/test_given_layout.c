@@ -24,12 +24,11 @@ GROUP(make_context, free_context);
 
 /* The plan is in the user's coordinates, as the request was, and may be one again. */
 TEST(the_plan_has_it_as_it_was_given) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_map_layout fitted, given, used;
   OWNED(abbe_image, map) = {0};
   OWNED(abbe_image, same) = {0};
   abbe_render_desc desc = {.width = 16, .height = 16, .photons = 32, .map_size = 64};
-  load_text(FAR_SCENE, &scene);
+  OWNED(abbe_scene, scene) = scene_of(FAR_SCENE);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   abbe_renderer_map_layout(renderer, 0, &fitted);
   given = fitted;
@@ -43,7 +42,7 @@ TEST(the_plan_has_it_as_it_was_given) {
     abbe_renderer_map_layout(renderer, 0, &used);
     for (int k = 0; k < 3; k++) assert_near(used.view.origin[k], fitted.view.origin[k], 1e-11);
     draw_frame(renderer);
-    read_map(renderer, 0, turn == 0 ? &map : &same);
+    *(turn == 0 ? &map : &same) = map_of(renderer, 0);
     if (turn > 0) assert_same_pixels(&map, &same);
     if (turn > 0) abbe_image_free(&same);
   }

@@ -120,10 +120,8 @@ TEST(every_function_missing) {
 #undef NAME
   };
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-    char part[64];
     hidden = names[i];
-    snprintf(part, sizeof part, "has no %s;", names[i]);
-    assert_refused(part);
+    assert_refused(printed("has no %s;", names[i]));
   }
 }
 
@@ -211,9 +209,9 @@ TEST(a_gpu_that_is_not_taken_is_told_of_once) {
   make_and_read(true, said, sizeof said);
   assert_string_equal(said, "");
   make_and_read(false, said, sizeof said);
-  assert_string_equal(said,
-                      "note: the GPU is not used, and the CPU draws: EGL's device (a bad one) "
-                      "does not open\n");
+  assert_string_equal(
+      said,
+      "note: the GPU is not used, and the CPU draws: EGL's device (a bad one) does not open\n");
   make_and_read(false, said, sizeof said);
   assert_string_equal(said, "");
 }
@@ -228,13 +226,12 @@ TEST(a_driver_without_a_name) {
 
 static void make_gem(abbe_context **context, abbe_renderer **renderer, abbe_result expected,
                      abbe_error *error) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   const abbe_render_desc desc = {.width = 8, .height = 8, .photons = 8, .map_size = 32};
   assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, context, NULL), ABBE_OK);
   assert_int_equal(abbe_scene_load(ABBE_SOURCE_DIR "/scenes/gem.yaml", NULL, &scene, NULL),
                    ABBE_OK);
   assert_int_equal(abbe_renderer_make(*context, &scene, &desc, renderer, error), expected);
-  abbe_scene_free(&scene);
 }
 
 TEST(shaders_that_do_not_compile) {

@@ -7,31 +7,26 @@ static const abbe_render_desc tiny = {.width = 24, .height = 20, .photons = 32, 
 /* Draws what was changed; its photons are kept, and it draws what another one draws. */
 static void assert_light_kept(abbe_renderer *renderer, const abbe_scene *scene, double before,
                               abbe_image *picture) {
-  abbe_image anew = {0};
   OK(abbe_renderer_change(renderer, scene, &tiny, &error));
   const abbe_statistics s = draw_frame(renderer);
   assert_true(s.kept[ABBE_PASS_PHOTONS] && s.kept[ABBE_PASS_SPECTRAL_MAP]);
   assert_false(s.kept[ABBE_PASS_EYE_RECEIVERS]);
   assert_true(s.energy.deposited == before);
-  read_picture(renderer, false, picture);
-  abbe_renderer *other = make_renderer(scene, &tiny);
-  draw_frame(other);
-  read_picture(other, false, &anew);
+  *picture = picture_of(renderer);
+  HELD(abbe_renderer, other) = drawn_renderer(scene, &tiny);
+  OWNED(abbe_image, anew) = picture_of(other);
   assert_same_pixels(picture, &anew);
-  abbe_renderer_free(other);
-  abbe_image_free(&anew);
 }
 
 GROUP(make_context, free_context);
 
 TEST(the_first_texture_keeps_photons) {
   static float texel[2][3] = {{0.5f, 0.25f, 0.75f}, {1, 0.5f, 0.25f}};
-  OWNED(abbe_scene, scene) = {0};
   abbe_image picture[3] = {{0}, {0}, {0}};
-  load_text(CAMERA POINT_LIGHT FLOOR BRICK("crown"), &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &tiny);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BRICK("crown"));
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &tiny);
   const double deposited = draw_frame(renderer).energy.deposited;
-  read_picture(renderer, false, &picture[0]);
+  picture[0] = picture_of(renderer);
   abbe_image *texture = &scene.object[0].texture;
   texture->width = 2;
   texture->height = 1;
@@ -43,19 +38,15 @@ TEST(the_first_texture_keeps_photons) {
   assert_light_kept(renderer, &scene, deposited, &picture[2]);
   assert_same_pixels(&picture[0], &picture[2]);
   for (int i = 0; i < 3; i++) abbe_image_free(&picture[i]);
-  abbe_renderer_free(renderer);
 }
 
 /* A spot's shadows are those of its place, whatever its cone is. */
 TEST(another_cone_is_followed_anew) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_image kept = {0}, anew = {0};
-  load_text(CAMERA
-            "lights:\n- {name: spot, kind: spot, position: [0.1, 0, 0.7], target: [0.2, 0, 0.2],"
-            " intensity: 2, cone: 30, soft: 5}\n" FLOOR BRICK("crown"),
-            &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &tiny);
-  draw_frame(renderer);
+  OWNED(abbe_scene, scene) =
+      scene_of(CAMERA "lights:\n- {name: spot, kind: spot, position: [0.1, 0, 0.7], target: [0.2, "
+                      "0, 0.2], intensity: 2, cone: 30, soft: 5}\n" FLOOR BRICK("crown"));
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &tiny);
   for (int turn = 0; turn < 3; turn++) {
     if (turn == 0) scene.light[0].cone_rad *= 0.8;
     if (turn == 1) scene.light[0].soft_rad *= 2;
@@ -63,16 +54,14 @@ TEST(another_cone_is_followed_anew) {
     OK(abbe_renderer_change(renderer, &scene, &tiny, &error));
     const abbe_statistics s = draw_frame(renderer);
     assert_false(s.kept[ABBE_PASS_PHOTONS]);
-    read_picture(renderer, false, &kept);
-    abbe_renderer *other = make_renderer(&scene, &tiny);
-    draw_frame(other);
-    read_picture(other, false, &anew);
+    kept = picture_of(renderer);
+    abbe_renderer *other = drawn_renderer(&scene, &tiny);
+    anew = picture_of(other);
     assert_same_pixels(&kept, &anew);
     abbe_renderer_free(other);
     abbe_image_free(&kept);
     abbe_image_free(&anew);
   }
-  abbe_renderer_free(renderer);
 }
 
 #define LARGE_RING                                                                                 \
@@ -92,19 +81,18 @@ TEST(coarse_views_show_nearly_the_same) {
   enum { NONE, EYE, ALL, AGAIN, COUNT };
   static const abbe_coarse coarse[COUNT] = {ABBE_COARSE_NONE, ABBE_COARSE_EYE, ABBE_COARSE_ALL,
                                             ABBE_COARSE_NONE};
-  OWNED(abbe_scene, scene) = {0};
   abbe_image picture[COUNT] = {{0}};
   abbe_render_desc desc = tiny;
   desc.model = ABBE_MODEL_LAYERS;
-  load_text(CAMERA POINT_LIGHT FLOOR LARGE_RING, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR LARGE_RING);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
   for (int i = 0; i < COUNT; i++) {
     desc.coarse = coarse[i];
     OK(abbe_renderer_change(renderer, &scene, &desc, &error));
     const abbe_statistics s = draw_frame(renderer);
     assert_true(s.kept[ABBE_PASS_PHOTONS] == (i == EYE));
     assert_false(s.kept[ABBE_PASS_EYE_RECEIVERS]);
-    read_picture(renderer, false, &picture[i]);
+    picture[i] = picture_of(renderer);
   }
   assert_same_pixels(&picture[AGAIN], &picture[NONE]);
   for (int i = EYE; i <= ALL; i++) {
@@ -112,7 +100,6 @@ TEST(coarse_views_show_nearly_the_same) {
     assert_true(sum_apart(&picture[i], &picture[NONE]) < 0.03 * sum_apart(&picture[NONE], NULL));
   }
   for (int i = 0; i < COUNT; i++) abbe_image_free(&picture[i]);
-  abbe_renderer_free(renderer);
 }
 
 #define RING_IN_COLOUR                                                                             \
@@ -121,22 +108,20 @@ TEST(coarse_views_show_nearly_the_same) {
 
 /* Of receivers of many triangles, too, which rays meet then that are drawn else: but for edges. */
 TEST(rays_show_receivers_as_they_are_drawn) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_image picture[2] = {{0}};
   abbe_render_desc desc = tiny;
   desc.supersample = desc.adaptive = 1;
   desc.aovs = true;
-  load_text(CAMERA POINT_LIGHT FLOOR BRICK("crown") RING_IN_COLOUR, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BRICK("crown") RING_IN_COLOUR);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
   for (int i = 0; i < 2; i++) {
     desc.coarse = i == 0 ? ABBE_COARSE_NONE : ABBE_COARSE_EYE;
     OK(abbe_renderer_change(renderer, &scene, &desc, &error));
     draw_frame(renderer);
-    read_picture(renderer, true, &picture[i]);
+    picture[i] = aovs_of(renderer);
   }
   print_message("apart by %.5f\n",
                 sum_apart(&picture[1], &picture[0]) / sum_apart(&picture[0], NULL));
   assert_true(sum_apart(&picture[1], &picture[0]) < 0.01 * sum_apart(&picture[0], NULL));
   for (int i = 0; i < 2; i++) abbe_image_free(&picture[i]);
-  abbe_renderer_free(renderer);
 }

@@ -5,21 +5,16 @@
 #include "base/maths.h"
 #include "validation/known/forms/closed_form.h"
 
-static const abbe_render_desc tiny = {.width = 16,
-                                      .height = 16,
-                                      .photons = 256,
-                                      .map_size = 512,
-                                      .space = ABBE_RGB_SPACE_XYZ,
-                                      .aovs = true};
+static const abbe_render_desc tiny =
+    FIELDS(.width = 16, .height = 16, .photons = 256, .map_size = 512, .space = ABBE_RGB_SPACE_XYZ,
+           .aovs = true);
 
 static void draw(const char *text, const abbe_render_desc *desc, abbe_image *aovs) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, desc);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, desc);
   const abbe_statistics statistics = draw_frame(renderer);
   assert_true(statistics.energy.reached == 0 || abbe_ledger_imbalance(&statistics.energy) < 1e-4);
-  read_picture(renderer, true, aovs);
-  abbe_renderer_free(renderer);
+  *aovs = aovs_of(renderer);
 }
 
 static double mean_of(const abbe_image *image, const char *name) {
@@ -29,10 +24,8 @@ static double mean_of(const abbe_image *image, const char *name) {
 }
 
 static double drawn_mean(const char *text, const abbe_render_desc *desc, const char *channel) {
-  OWNED(abbe_image, aovs);
-  draw(text, desc, &aovs);
-  const double mean = mean_of(&aovs, channel);
-  return mean;
+  FILLED(abbe_image, aovs, draw(text, desc, &aovs));
+  return mean_of(&aovs, channel);
 }
 
 /* ---- the ring ---- */
@@ -49,21 +42,21 @@ static double ring_light(const place *p) {
   const double at[2] = {r * p->at[0], r * p->at[1]}, half = r * p->half;
   abbe_catacaustic c = {.radius = r, .height = r * p->height, .elevation = e};
   for (int k = 0; k < 3; k++) c.lamp[k] = r * p->lamp[k];
-  char text[1024], light[200];
+  char light[200];
   if (e > 0)
     snprintf(light, sizeof light, "kind: directional, direction: [%.9g, 0, %.9g], irradiance: 1",
              cos(e), -sin(e));
   else
     snprintf(light, sizeof light, "kind: point, position: [%.9g, %.9g, %.9g], intensity: 1",
              c.lamp[0], c.lamp[1], c.lamp[2]);
-  snprintf(text, sizeof text,
-           "materials: default\ncamera: {eye: [%.9g, %.9g, %.9g], target: [%.9g, %.9g, 0], up: [0, "
-           "1, 0], fov: %.9g}\nlights: [{name: lamp, %s}]\nobjects:\n"
-           "- {name: floor, shape: rectangle, width: 1, height: 1, reflectance: 1}\n"
-           "- {name: ring, shape: lathe, around: 1024, profile: [[%.9g, 0], [%.9g, %.9g]], mirror: "
-           "0.9}\n",
-           at[0], at[1], away, at[0], at[1], 2 * atan(half / away) * 180 / ABBE_PI, light, r, r,
-           c.height);
+  const char *text = printed(
+      "materials: default\ncamera: {eye: [%.9g, %.9g, %.9g], target: [%.9g, %.9g, 0], up: [0, "
+      "1, 0], fov: %.9g}\nlights: [{name: lamp, %s}]\nobjects:\n"
+      "- {name: floor, shape: rectangle, width: 1, height: 1, reflectance: 1}\n"
+      "- {name: ring, shape: lathe, around: 1024, profile: [[%.9g, 0], [%.9g, %.9g]], mirror: "
+      "0.9}\n",
+      at[0], at[1], away, at[0], at[1], 2 * atan(half / away) * 180 / ABBE_PI, light, r, r,
+      c.height);
   size_t branches;
   const double known = abbe_catacaustic_mean(&c, at, half, 12, 0.9, 3, &branches) / ABBE_PI;
   assert_int_equal(branches, p->branches);
@@ -149,15 +142,19 @@ static void check_penumbra(const char *light, bool disk, size_t points) {
   for (int i = -6; i <= 6; i++) {
     const double at = 0.2 * i,
                  share = disk ? abbe_closed_form_penumbra(at) : fmax(0, fmin(1, 0.5 * (1 + at)));
-    char text[1024];
-    snprintf(text, sizeof text,
-             "materials: default\ncamera: {eye: [%.9g, 0, 0.1], target: [%.9g, 0, 0], up: [0, 1, "
-             "0], fov: 0.1}\nlights: [{name: lamp, kind: %s, position: [0, 0, 2], direction: [0, "
-             "0, -1], radiance: 1000}]\n" WHITE_FLOOR
-             "- {name: jaw, shape: rectangle, width: 1, height: 1, reflectance: 0, transform: "
-             "[{translate: [-0.5, 0, 1]}]}\n",
-             at * half, at * half, light);
-    const double seen = drawn_mean(text, &desc, "direct.Y") / (1000 * area / (4 * ABBE_PI));
+    const double seen =
+        drawn_mean(
+            printed(
+                "materials: default\ncamera: {eye: [%.9g, 0, 0.1], target: [%.9g, 0, 0], up: [0, "
+                "1, "
+                "0], fov: 0.1}\nlights: [{name: lamp, kind: %s, position: [0, 0, 2], direction: "
+                "[0, "
+                "0, -1], radiance: 1000}]\n" WHITE_FLOOR
+                "- {name: jaw, shape: rectangle, width: 1, height: 1, reflectance: 0, transform: "
+                "[{translate: [-0.5, 0, 1]}]}\n",
+                at * half, at * half, light),
+            &desc, "direct.Y") /
+        (1000 * area / (4 * ABBE_PI));
     worst = fmax(worst, fabs(seen - share));
     if (fabs(at) > 1) assert_near(seen, share, 1e-3);
   }
@@ -166,7 +163,7 @@ static void check_penumbra(const char *light, bool disk, size_t points) {
 }
 
 TEST(a_penumbra_has_its_width) {
-  check_penumbra("disk, radius: 0.02", true, 8);
+  if (all_cases()) check_penumbra("disk, radius: 0.02", true, 8);
   check_penumbra("disk, radius: 0.02", true, 16);
   check_penumbra("rectangle, width: 0.04, height: 0.04", false, 16);
 }
@@ -180,15 +177,15 @@ TEST(floors_have_their_form_factors) {
 #define SMALL_VIEW                                                                                 \
   "materials: default\ncamera: {eye: [0.05, 0, 0.1], target: [0, 0, 0], fov: 0.1}\n"
   assert_near(drawn_mean(SMALL_VIEW
-                         "lights: [{name: lamp, kind: disk, position: [0, 0, 0.4], "
-                         "direction: [0, 0, -1], radius: 0.3, radiance: 5}]\n" WHITE_FLOOR,
+                         "lights: [{name: lamp, kind: disk, position: [0, 0, 0.4], direction: [0, "
+                         "0, -1], radius: 0.3, radiance: 5}]\n" WHITE_FLOOR,
                          &desc, "direct.Y") /
                   (5 * abbe_closed_form_coaxial_disks(0, 0.3, 0.4)),
               1, 0.02);
   assert_near(
       drawn_mean(SMALL_VIEW
-                 "lights: [{name: lamp, kind: rectangle, position: [0.2, 0, 0.4], "
-                 "direction: [0, 0, -1], width: 0.3, height: 0.2, radiance: 5}]\n" WHITE_FLOOR,
+                 "lights: [{name: lamp, kind: rectangle, position: [0.2, 0, 0.4], direction: [0, "
+                 "0, -1], width: 0.3, height: 0.2, radiance: 5}]\n" WHITE_FLOOR,
                  &desc, "direct.Y") /
           (5 * abbe_closed_form_polygon(corner, 4, p, up)),
       1, 0.02);

@@ -4,15 +4,13 @@
 #include "tests/gl/frame.h"
 
 static void draw(const char *locale, abbe_image *picture, abbe_image *map) {
-  abbe_scene scene;
   const abbe_render_desc desc = {
       .width = 24, .height = 18, .photons = 48, .map_size = 64, .min_nm = 390.5, .max_nm = 720.25};
   assert_non_null(setlocale(LC_ALL, locale));
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("murk"), &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, picture);
-  read_map(renderer, 0, map);
+  abbe_scene scene = scene_of(CAMERA POINT_LIGHT FLOOR BALL("murk"));
+  abbe_renderer *renderer = drawn_renderer(&scene, &desc);
+  *picture = picture_of(renderer);
+  *map = map_of(renderer, 0);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
   setlocale(LC_ALL, "C");

@@ -81,7 +81,7 @@ static void make_receivers(receivers *r) {
   upload_receivers(r);
 }
 
-static void free_receivers(receivers *r) {
+static void receivers_free(receivers *r) {
   abbe_mesh_free(&r->mesh);
   abbe_bvh_free(&r->h);
   free(r->triangle);
@@ -126,10 +126,9 @@ GROUP(make_context, free_context);
 TEST(shaders_find_the_nearest_of_both) {
   static float in[RAYS][8], out[RAYS][4], normal[RAYS][4];
   char text[2048];
-  receivers r;
   uint64_t random = 5;
   size_t odd = 0, met[FLATS + 1] = {0};
-  make_receivers(&r);
+  FILLED(receivers, r, make_receivers(&r));
   for (int i = 0; i < RAYS; i++) {
     double o[3], d[3];
     for (int k = 0; k < 3; k++) {
@@ -180,7 +179,6 @@ TEST(shaders_find_the_nearest_of_both) {
   for (int k = 0; k <= FLATS; k++) assert_true(met[k] > RAYS / 50);
   if (odd * 200 >= RAYS) print_error("%zu of %d rays differ\n", odd, RAYS);
   assert_true(odd * 200 < RAYS);
-  free_receivers(&r);
 }
 
 /* ---- triangles that tile parallelograms ---- */
@@ -192,16 +190,15 @@ typedef struct frame {
 
 static void draw(const abbe_scene *scene, const abbe_render_desc *desc, abbe_map_layout *layout,
                  frame *out) {
-  abbe_renderer *renderer = make_renderer(scene, desc);
+  HELD(abbe_renderer, renderer) = make_renderer(scene, desc);
   out->energy = draw_frame(renderer).energy;
   assert_true(out->energy.reached > 0 && abbe_ledger_imbalance(&out->energy) < 1e-4);
-  read_picture(renderer, desc->aovs, &out->picture);
-  read_map(renderer, 0, &out->map);
+  out->picture = read_picture(renderer, desc->aovs);
+  out->map = map_of(renderer, 0);
   if (layout != NULL) abbe_renderer_map_layout(renderer, 0, layout);
-  abbe_renderer_free(renderer);
 }
 
-static void free_frame(frame *f) {
+static void frame_free(frame *f) {
   abbe_image_free(&f->picture);
   abbe_image_free(&f->map);
 }
@@ -233,24 +230,20 @@ TEST(triangles_do_as_parallelograms_do) {
   static const char *const texts[] = {CAMERA POINT_LIGHT TEXTURED_FLOOR CRATE HILL BALL("crown"),
                                       CAMERA SUN TEXTURED_FLOOR CRATE HILL RING("flat")};
   for (int i = all_cases() ? 0 : 1; i < 2; i++) {
-    OWNED(abbe_scene, scene) = {0};
     abbe_map_layout layout;
     abbe_render_desc desc = small_frame;
     if (i == 1) desc.width = desc.height = desc.photons = 32;
-    frame flat, mesh;
-    load_text(texts[i], &scene);
-    draw(&scene, &desc, &layout, &flat);
+    OWNED(abbe_scene, scene) = scene_of(texts[i]);
+    FILLED(frame, flat, draw(&scene, &desc, &layout, &flat));
     scene.object[0].exact.kind = scene.object[1].exact.kind = ABBE_EXACT_NONE;
     desc.map_layout = &layout;
-    draw(&scene, &desc, NULL, &mesh);
+    FILLED(frame, mesh, draw(&scene, &desc, NULL, &mesh));
     scene.object[0].exact.kind = scene.object[1].exact.kind = ABBE_EXACT_PARALLELOGRAMS;
     /* edges are a float's few digits wider or narrower, and light there lands here or there */
     assert_true(apart(&flat.map, &mesh.map) < 1e-5);
     assert_true(apart(&flat.picture, &mesh.picture) < 1e-6);
     assert_near(mesh.energy.deposited / flat.energy.deposited, 1, 1e-4);
     assert_near(mesh.energy.missed / flat.energy.missed, 1, 1e-3);
-    free_frame(&flat);
-    free_frame(&mesh);
   }
 }
 
@@ -305,16 +298,14 @@ TEST(light_lands_on_a_ball_behind_a_pane) {
                                  .exits = ABBE_RENDER_MAX_EXITS,
                                  .space = ABBE_RGB_SPACE_XYZ,
                                  .aovs = true};
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_image, picture) = {0};
-  OWNED(abbe_renderer_hits, hits) = {0};
   size_t on_globe = 0, seen = 0;
-  load_text(UNDER_A_PANE, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  OWNED(abbe_scene, scene) = scene_of(UNDER_A_PANE);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
   const abbe_ledger e = draw_frame(renderer).energy;
   assert_true(abbe_ledger_imbalance(&e) < 1e-4);
   assert_near(e.deposited / e.reached, pane_passes, 1e-3);
-  OK(abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, &hits, &error));
+  MADE(abbe_renderer_hits, hits,
+       abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, &hits, &error));
   for (size_t i = 0; i < hits.count * hits.slots * hits.samples; i++) {
     const float *p = hits.at + 4 * i;
     if (p[3] <= 0) continue;
@@ -329,7 +320,7 @@ TEST(light_lands_on_a_ball_behind_a_pane) {
     }
   }
   assert_true(on_globe > hits.count / 4);
-  read_picture(renderer, true, &picture);
+  OWNED(abbe_image, picture) = aovs_of(renderer);
   const size_t caustic = abbe_image_find_channel(&picture, "caustic.Y");
   const size_t direct = abbe_image_find_channel(&picture, "direct.Y");
   double sum = 0, expected = 0, worst = 0;
@@ -347,7 +338,6 @@ TEST(light_lands_on_a_ball_behind_a_pane) {
   assert_true(seen > 100);
   assert_near(sum / expected, 1, 5e-3);
   assert_true(worst < 0.045);
-  abbe_renderer_free(renderer);
 }
 
 /* The eye looks along y into a pane; a moon in its back is all that the pane can mirror, and
@@ -366,23 +356,19 @@ TEST(light_lands_on_a_ball_behind_a_pane) {
 
 TEST(a_pane_mirrors_what_is_behind_the_eye) {
   const double known = pane_reflects * 0.5 * 0.2 / acos(-1);
-  OWNED(abbe_scene, scene) = {0};
-  load_text(MOON_BEHIND_THE_EYE, &scene);
+  OWNED(abbe_scene, scene) = scene_of(MOON_BEHIND_THE_EYE);
   for (int i = 0; i < 2; i++) {
     abbe_render_desc desc = small_frame;
-    OWNED(abbe_image, picture) = {0};
     desc.space = ABBE_RGB_SPACE_XYZ;
     desc.model = i == 0 ? ABBE_MODEL_CONVEX : ABBE_MODEL_BVH;
     desc.width = desc.height = 16;
     desc.energy_share = 1e-6;
     desc.exits = ABBE_RENDER_MAX_EXITS;
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
-    draw_frame(renderer);
-    read_picture(renderer, false, &picture);
+    HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+    OWNED(abbe_image, picture) = picture_of(renderer);
     for (size_t k = 0; k < 8 * 8; k++) {
       const size_t pixel = (4 + k / 8) * 16 + 4 + k % 8; /* the middle, which shows no card */
       assert_near(picture.data[pixel * picture.channels + 1] / known, 1, 2e-3);
     }
-    abbe_renderer_free(renderer);
   }
 }

@@ -17,12 +17,9 @@
   SHINING("pane", "shape: rectangle, width: 0.8, height: 0.8",                                     \
           "{rotate: {axis: [0, 1, 0], angle: " angle "}}, {translate: " at "}", what)
 
-static const abbe_render_desc tiny = {.width = 16,
-                                      .height = 16,
-                                      .photons = 128,
-                                      .map_size = 128,
-                                      .space = ABBE_RGB_SPACE_XYZ,
-                                      .aovs = true};
+static const abbe_render_desc tiny =
+    FIELDS(.width = 16, .height = 16, .photons = 128, .map_size = 128, .space = ABBE_RGB_SPACE_XYZ,
+           .aovs = true);
 
 typedef struct frame {
   abbe_ledger energy;
@@ -30,16 +27,14 @@ typedef struct frame {
 } frame;
 
 static void draw(const char *text, const abbe_render_desc *desc, frame *f) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, desc);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, desc);
   f->energy = draw_frame(renderer).energy;
-  read_picture(renderer, false, &f->picture);
-  read_picture(renderer, true, &f->aovs);
-  abbe_renderer_free(renderer);
+  f->picture = picture_of(renderer);
+  f->aovs = aovs_of(renderer);
 }
 
-static void drop(frame *f) {
+static void frame_free(frame *f) {
   abbe_image_free(&f->picture);
   abbe_image_free(&f->aovs);
 }
@@ -69,7 +64,7 @@ GROUP(make_context, free_context);
  * eye looks down at the floor beside the ball, which is 1 m above; not where the light goes on
  * nearly straight, for there a cell of photons spreads widely. */
 TEST(a_ball_shines_evenly) {
-  frame f;
+  OWNED(frame, f) = {0};
   abbe_render_desc desc = tiny;
   desc.photons = 256;
   desc.map_size = 512;
@@ -86,13 +81,12 @@ TEST(a_ball_shines_evenly) {
   assert_near(seen / known, 1, 0.02);
   assert_near(f.energy.absorbed / f.energy.reached, 0.2, 1e-4);
   assert_true(abbe_ledger_imbalance(&f.energy) < 1e-4);
-  drop(&f);
 }
 
 /* Pixel by pixel: what pattern the grid of photons and the texels leave in light that diverges. */
 TEST(a_balls_light_is_smooth) {
   enum { SIDE = 64 };
-  frame f;
+  OWNED(frame, f) = {0};
   abbe_render_desc desc = tiny;
   desc.width = desc.height = SIDE;
   desc.photons = 0; /* as by default */
@@ -119,19 +113,16 @@ TEST(a_balls_light_is_smooth) {
   print_message("%.4f of the ball's light, %.4f off it, %.4f at the most\n", mean, ripple, worst);
   assert_near(mean, 1, 0.01);
   assert_true(ripple < 0.01 && worst < 0.035);
-  drop(&f);
 }
 
 /* The pane stands at x = 0.5: light comes from the lamp, and from its image at x = 1.1. On either
  * side of the pane, for both mirror. */
 static void check_pane(const char *angle) {
-  char text[1024];
-  frame f;
-  snprintf(text, sizeof text,
-           EYE("[0.2, -0.5, 0.6]", "[0.2, 0, 0]") LAMP("[-0.1, 0.1, 0.7]")
-               WHITE_FLOOR PANE("[0.5, 0, 0.42]", "%s", "0.9"),
-           angle);
-  draw(text, &tiny, &f);
+  FILLED(frame, f,
+         draw(printed(EYE("[0.2, -0.5, 0.6]", "[0.2, 0, 0]") LAMP("[-0.1, 0.1, 0.7]")
+                          WHITE_FLOOR PANE("[0.5, 0, 0.42]", "%s", "0.9"),
+                      angle),
+              &tiny, &f));
   double known[2];
   for (int i = 0; i < 2; i++) {
     const double x = i == 0 ? -0.1 : 1.1, r2 = (0.2 - x) * (0.2 - x) + 0.01 + 0.49;
@@ -144,7 +135,6 @@ static void check_pane(const char *angle) {
   assert_near(lamp / known[0], 1, 2e-3);
   assert_near(f.energy.absorbed / f.energy.reached, 0.1, 1e-4);
   assert_true(abbe_ledger_imbalance(&f.energy) < 1e-4);
-  drop(&f);
 }
 
 TEST(a_pane_shines_like_the_lamps_image) {
@@ -154,26 +144,26 @@ TEST(a_pane_shines_like_the_lamps_image) {
 
 /* Behind the pane no light comes through: neither the lamp's nor any photon's. */
 TEST(a_mirrors_shadow_is_dark) {
-  frame f;
+  OWNED(frame, f) = {0};
   draw(EYE("[0.9, -0.5, 0.6]", "[0.7, 0, 0]") LAMP("[-0.1, 0.1, 0.7]")
            WHITE_FLOOR PANE("[0.5, 0, 0.42]", "90", "0.9"),
        &tiny, &f);
   assert_near(image_max(&f.picture, 1), 0, 1e-6);
-  drop(&f);
 }
 
 /* But another mirror may light that shadow: two upright panes in a sun that stands at 45 degrees.
  * The left one hides the floor from 1 to 21 cm behind it, and the right one throws its light from 9
  * to 29 cm. */
 TEST(a_mirrors_shadow_may_be_lit_by_another) {
-  frame f;
+  OWNED(frame, f) = {0};
   abbe_render_desc desc = tiny;
   desc.photons = 512; /* of the light's layers too: they tell where panes end, to a texel */
   draw(EYE("[0.15, -0.5, 0.6]",
-           "[0.15, 0, 0]") "lights:\n- {name: sun, kind: directional, direction: "
-                           "[1, 0, -1], irradiance: 1}\n" WHITE_FLOOR SHINING(
+           "[0.15, 0, 0]") "lights:\n- {name: sun, kind: directional, direction: [1, 0, -1], "
+                           "irradiance: 1}\n" WHITE_FLOOR SHINING(
                                "left", "shape: rectangle, width: 0.2, height: 0.4",
-                               "{rotate: {axis: [0, 1, 0], angle: 90}}, {translate: [0, 0, 0.11]}",
+                               "{rotate: {axis: [0, 1, 0], angle: 90}}, {translate: [0, 0, "
+                               "0.11]}",
                                "0.8") SHINING("right", "shape: rectangle, width: 0.2, height: 0.4",
                                               "{rotate: {axis: [0, 1, 0], angle: 90}}, {translate: "
                                               "[0.3, 0, 0.11]}",
@@ -184,7 +174,6 @@ TEST(a_mirrors_shadow_may_be_lit_by_another) {
   assert_near(mean_of(&f.aovs, "caustic.Y") / known, 1, 0.01);
   assert_near(mean_of(&f.aovs, "direct.Y"), 0, 1e-6);
   assert_near(f.energy.deposited / (2 * 0.8 * 0.2 * 0.4 * sqrt(0.5)), 1, 5e-3);
-  drop(&f);
 }
 
 /* In surroundings that are alike all around, a whole mirror is not seen: a ball, and a ring, in
@@ -194,23 +183,19 @@ TEST(a_whole_mirror_is_not_seen_in_uniform_light) {
       "shape: sphere, radius: 0.1, levels: 4",
       "shape: ring, major: 0.1, minor: 0.03, around: 48, across: 24"};
   for (int i = 0; i < 2; i++) {
-    char text[1024];
-    frame f;
-    snprintf(text, sizeof text,
-             "materials: default\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.1], fov: 20}\n"
-             "background: 2\n" LAMP(
-                 "[0, 0, -1]") "objects:\n- {name: speck, shape: rectangle, width: 0.001, height: "
-                               "0.001, "
-                               "reflectance: 0.5, transform: [{translate: [0, 3, -1]}]}\n" SHINING(
-                                   "body", "%s", "{translate: [0, 0, 0.1]}", "1"),
-             shape[i]);
+    const char *text = printed(
+        "materials: default\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.1], fov: 20}\n"
+        "background: 2\n" LAMP(
+            "[0, 0, -1]") "objects:\n- {name: speck, shape: rectangle, width: 0.001, height: "
+                          "0.001, reflectance: 0.5, transform: [{translate: [0, 3, "
+                          "-1]}]}\n" SHINING("body", "%s", "{translate: [0, 0, 0.1]}", "1"),
+        shape[i]);
     abbe_render_desc desc = tiny;
     desc.width = desc.height = 48;
-    draw(text, &desc, &f);
+    FILLED(frame, f, draw(text, &desc, &f));
     const size_t channels = f.picture.channels;
     for (size_t k = 0; k < 48 * 48; k++)
       assert_near((double)f.picture.data[k * channels + 1], 2, 2e-3);
-    drop(&f);
   }
 }
 
@@ -222,11 +207,10 @@ TEST(gold_has_its_colour) {
       "illuminant: E}\nobjects:\n- {name: speck, shape: rectangle, width: 0.001, height: 0.001, "
       "reflectance: 0.5, transform: [{translate: [0.9, 0, -1.5]}]}\n"
       "- {name: pane, shape: rectangle, width: 1, height: 1, mirror: gold}\n";
-  abbe_scene scene = {0};
   abbe_weights_range range;
   double known[3] = {0}, to_xyz[9], from_xyz[9], behind[3] = {0}, rgb[3], xyz[3];
   abbe_upsampling lift;
-  load_text(text, &scene);
+  abbe_scene scene = scene_of(text);
   abbe_weights_range_make(&scene.light[0].illuminant, 380, 780, &range);
   /* The surroundings are the working space's white, lifted to all wavelengths under the lamp's. */
   OK(abbe_upsampling_make(&scene.light[0].illuminant, 380, 780, &lift, &error));
@@ -242,30 +226,27 @@ TEST(gold_has_its_colour) {
     for (int c = 0; c < 3; c++) known[c] += share * xyz[c] * abbe_optics_fresnel_conductor(1, n, k);
   }
   abbe_scene_free(&scene);
-  frame f;
   abbe_render_desc desc = tiny;
   desc.wavelengths = 21; /* a band's colour and its metal's are each a mean: of 7 bands, 5e-3 */
-  draw(text, &desc, &f);
+  FILLED(frame, f, draw(text, &desc, &f));
   static const char *const names[] = {"X", "Y", "Z"};
   for (int c = 0; c < 3; c++) assert_near(mean_of(&f.picture, names[c]) / known[c], 1, 2e-3);
-  drop(&f);
 }
 
 /* Glass on silver: light goes through the glass, off the mirror, and back through the glass. */
 TEST(light_goes_through_glass_off_a_mirror_and_back) {
-  frame f;
+  OWNED(frame, f) = {0};
   abbe_render_desc desc = tiny;
   desc.energy_share = 1e-4;
   desc.exits = ABBE_RENDER_MAX_EXITS;
-  draw(
-      "materials: glass.yaml\ncamera: {eye: [1, -1, 0.8], target: [1, 0, 0], fov: 3}\n"
-      "lights:\n- {name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1}\n"
-      "objects:\n- {name: floor, shape: rectangle, width: 4, height: 4, reflectance: 1, transform: "
-      "[{translate: [0, 0, -0.1]}]}\n"
-      "- {name: foil, shape: rectangle, width: 0.4, height: 0.4, mirror: 0.9}\n"
-      "- {name: slab, shape: box, size: [0.4, 0.4, 0.05], transform: [{translate: [0, 0, 0.1]}], "
-      "material: flat}\n",
-      &desc, &f);
+  draw("materials: glass.yaml\ncamera: {eye: [1, -1, 0.8], target: [1, 0, 0], fov: 3}\n"
+       "lights:\n- {name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1}\n"
+       "objects:\n- {name: floor, shape: rectangle, width: 4, height: 4, reflectance: 1, "
+       "transform: [{translate: [0, 0, -0.1]}]}\n"
+       "- {name: foil, shape: rectangle, width: 0.4, height: 0.4, mirror: 0.9}\n"
+       "- {name: slab, shape: box, size: [0.4, 0.4, 0.05], transform: [{translate: [0, 0, 0.1]}], "
+       "material: flat}\n",
+       &desc, &f);
   /* all of it goes up again: R of a slab, over a mirror of 0.9 */
   const double face = 0.04, slab = 2 * face / (1 + face), pass = 1 - slab;
   const double back = slab + pass * pass * 0.9 / (1 - 0.9 * slab);
@@ -276,23 +257,20 @@ TEST(light_goes_through_glass_off_a_mirror_and_back) {
   assert_true(f.energy.trapped < 3e-3 * f.energy.reached);
   assert_true(f.energy.deposited < 1e-4 * f.energy.reached);
   assert_true(abbe_ledger_imbalance(&f.energy) < 1e-4);
-  drop(&f);
 }
 
 /* Dispersed and coloured light, off gold, through glass, on meshes that are open. */
 TEST(the_ledger_closes) {
-  frame f;
+  OWNED(frame, f) = {0};
   draw(EYE("[0.2, -0.5, 0.6]", "[0.2, 0, 0]") LAMP("[-0.1, 0.1, 0.7]")
            WHITE_FLOOR PANE("[0.5, 0, 0.42]", "80", "gold")
                SHINING("ring", "shape: ring, major: 0.1, minor: 0.02, around: 48, across: 24",
                        "{translate: [-0.3, 0, 0.1]}",
                        "copper") "- {name: ball, shape: sphere, radius: 0.08, transform: "
-                                 "[{translate: [0.2, 0, 0.2]}], "
-                                 "material: n-sf11}\n",
+                                 "[{translate: [0.2, 0, 0.2]}], material: n-sf11}\n",
        &tiny, &f);
   print_message("imbalance %.2g\n", abbe_ledger_imbalance(&f.energy));
   assert_true(abbe_ledger_imbalance(&f.energy) < 1e-4);
   assert_true(f.energy.absorbed > 0.05 * f.energy.reached);
   assert_true(f.energy.deposited > 0.1 * f.energy.reached);
-  drop(&f);
 }

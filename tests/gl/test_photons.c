@@ -8,10 +8,8 @@ static void trace_photons(const abbe_scene *scene, const abbe_render_desc *desc,
                           abbe_renderer_hits *l) {
   abbe_scene aside = *scene;
   look_aside(&aside);
-  abbe_renderer *renderer = make_renderer(&aside, desc);
-  draw_frame(renderer);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&aside, desc);
   OK(abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, l, &error));
-  abbe_renderer_free(renderer);
   assert_true(l->count > 0);
 }
 
@@ -94,12 +92,10 @@ static void compare_path(const abbe_renderer_hits *l, size_t photon, sphere_path
 GROUP(make_context, free_context);
 
 TEST(a_sphere_lands_as_double_precision_says) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_renderer_hits, l) = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
   abbe_render_desc desc = small_frame;
   desc.wavelengths = 1; /* one sample stands in the middle, at 580 nm */
-  trace_photons(&scene, &desc, &l);
+  FILLED(abbe_renderer_hits, l, trace_photons(&scene, &desc, &l));
   sphere_path path = {.centre = scene.object[1].exact.centre,
                       .radius = scene.object[1].exact.radius};
   OK(abbe_material_n(scene.object[1].material, 580, &path.n, &error));
@@ -122,11 +118,8 @@ TEST(a_sphere_lands_as_double_precision_says) {
   "   transform: [{translate: [0, 0, 1]}]}\n"
 
 static void trace_prism(const char *glass, double wall_x, abbe_renderer_hits *l) {
-  char text[1024];
   double pi = acos(-1), up = asin(1.5 * sin(pi / 6)) - pi / 6;
-  OWNED(abbe_scene, scene) = {0};
-  snprintf(text, sizeof text, PRISM_SCENE, cos(up), sin(up), wall_x, glass);
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(printed(PRISM_SCENE, cos(up), sin(up), wall_x, glass));
   /* Each wavelength on its own: every photon takes all seven. */
   abbe_render_desc desc = small_frame;
   desc.fill = ABBE_FILL_NONE;
@@ -146,10 +139,8 @@ static bool enters_high(const abbe_renderer_hits *l, size_t photon) {
 }
 
 TEST(a_prism_deviates_least_as_the_formula_says) {
-  OWNED(abbe_renderer_hits, near) = {0};
-  OWNED(abbe_renderer_hits, far) = {0};
-  trace_prism("flat", 1, &near);
-  trace_prism("flat", 1.5, &far);
+  FILLED(abbe_renderer_hits, near, trace_prism("flat", 1, &near));
+  FILLED(abbe_renderer_hits, far, trace_prism("flat", 1.5, &far));
   assert_int_equal(near.count, far.count);
   const double half = acos(-1) / 6, expected = 2 * (asin(1.5 * sin(half)) - half);
   assert_near(expected * 180 / acos(-1), 37.18, 0.01);
@@ -186,8 +177,7 @@ static double mean_height(const abbe_renderer_hits *l, size_t sample) {
 
 /* The beam comes from below and is bent down: the more, the lower on the wall. */
 TEST(violet_is_bent_more_than_red) {
-  OWNED(abbe_renderer_hits, l) = {0};
-  trace_prism("crown", 1, &l);
+  FILLED(abbe_renderer_hits, l, trace_prism("crown", 1, &l));
   assert_int_equal(l.samples, 7);
   for (size_t sample = 1; sample < 7; sample++)
     assert_true(mean_height(&l, sample) > mean_height(&l, sample - 1) + 1e-3);
@@ -195,10 +185,8 @@ TEST(violet_is_bent_more_than_red) {
 
 /* The shipped prism's spectrum on its wall runs from violet, deviated most, to red. */
 TEST(the_shipped_prism_makes_a_spectrum) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_renderer_hits, l) = {0};
-  load_shipped("prism", &scene);
-  trace_photons(&scene, &small_frame, &l);
+  OWNED(abbe_scene, scene) = shipped_scene("prism");
+  FILLED(abbe_renderer_hits, l, trace_photons(&scene, &small_frame, &l));
   double before = 0;
   for (size_t sample = 0; sample < l.samples; sample++) {
     double sum = 0, flux = 0;
@@ -219,17 +207,11 @@ TEST(a_hill_moves_no_hit_on_the_floor) {
   static const char *const balls[] = {BALL("flat"), RING("flat")};
   size_t on_hill = 0;
   for (int k = 0; k < 2; k++) {
-    char text[1024];
-    OWNED(abbe_renderer_hits, alone) = {0};
-    OWNED(abbe_renderer_hits, beside) = {0};
-    abbe_scene scene = {0};
-    snprintf(text, sizeof text, "%s%s", CAMERA POINT_LIGHT FLOOR, balls[k]);
-    load_text(text, &scene);
-    trace_photons(&scene, &small_frame, &alone);
+    abbe_scene scene = scene_of(printed("%s%s", CAMERA POINT_LIGHT FLOOR, balls[k]));
+    FILLED(abbe_renderer_hits, alone, trace_photons(&scene, &small_frame, &alone));
     abbe_scene_free(&scene);
-    snprintf(text, sizeof text, "%s%s", CAMERA POINT_LIGHT FLOOR HILL, balls[k]);
-    load_text(text, &scene);
-    trace_photons(&scene, &small_frame, &beside);
+    scene = scene_of(printed("%s%s", CAMERA POINT_LIGHT FLOOR HILL, balls[k]));
+    FILLED(abbe_renderer_hits, beside, trace_photons(&scene, &small_frame, &beside));
     abbe_scene_free(&scene);
     assert_int_equal(alone.count, beside.count);
     assert_int_equal(alone.slots, beside.slots);
@@ -259,15 +241,13 @@ TEST(a_hill_moves_no_hit_on_the_floor) {
 TEST(a_slit_lets_its_light_through_whatever_the_grid) {
   static const size_t grids[] = {20, 33, 64, 150};
   double expected = 40 * 0.002 * 0.03 / (0.6 * 0.6) * (1 - 1.5 * (0.03 * 0.03 / 12) / (0.6 * 0.6));
-  OWNED(abbe_scene, scene) = {0};
-  load_shipped("prism", &scene);
+  OWNED(abbe_scene, scene) = shipped_scene("prism");
   for (size_t i = 0; i < 8; i++) {
     abbe_render_desc desc = small_frame;
     desc.photons = grids[i % 4];
     desc.photon_shift[0] = i < 4 ? 0 : 0.4;
     desc.photon_shift[1] = i < 4 ? 0 : -0.3;
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
     assert_near(draw_frame(renderer).energy.reached / expected, 1, i < 4 ? 2e-3 : 8e-3);
-    abbe_renderer_free(renderer);
   }
 }

@@ -16,18 +16,16 @@ static const char BESIDE_GOLD[] =
 
 static void load_plate(const char *stone, double thickness_m, const char *beside,
                        abbe_scene *scene) {
-  char text[1024];
-  snprintf(text, sizeof text,
-           "camera: {eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 1}\nbackground: 1\n"
-           "lights:\n"
-           "- {name: aside, kind: spot, position: [3, 3, 1], target: [4, 4, 0], cone: 5,\n"
-           "   intensity: 1}\n"
-           "objects:\n"
-           "- {name: plate, shape: box, size: [0.2, 0.2, %g], material: %s}\n%s"
-           "- {name: corner, shape: rectangle, width: 0.002, height: 0.002, reflectance: 0.5,\n"
-           "   transform: [{translate: [0.016, 0.016, -1]}]}\n",
-           thickness_m, stone, beside);
-  load_text(text, scene);
+  *scene = scene_of(
+      printed("camera: {eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 1}\nbackground: 1\n"
+              "lights:\n"
+              "- {name: aside, kind: spot, position: [3, 3, 1], target: [4, 4, 0], cone: 5,\n"
+              "   intensity: 1}\n"
+              "objects:\n"
+              "- {name: plate, shape: box, size: [0.2, 0.2, %g], material: %s}\n%s- {name: corner, "
+              "shape: rectangle, width: 0.002, height: 0.002, reflectance: 0.5,\n"
+              "   transform: [{translate: [0.016, 0.016, -1]}]}\n",
+              thickness_m, stone, beside));
 }
 
 /* What of the light goes on to the background, through the plate or back off its faces. */
@@ -68,20 +66,14 @@ static double dominant_of(const double xyz[3], const double white[3]) {
 /* coarse: as while something moves; paths then end below a twentieth of their light, or a tenth. */
 static void hold(const char *stone, double thickness_m, const char *beside, size_t wavelengths,
                  size_t samples, abbe_coarse coarse) {
-  abbe_render_desc desc = {.width = SIDE,
-                           .height = SIDE,
-                           .wavelengths = wavelengths,
-                           .supersample = samples,
-                           .coarse = coarse,
-                           .space = ABBE_RGB_SPACE_XYZ};
-  abbe_scene scene;
-  abbe_image image;
+  abbe_render_desc desc =
+      FIELDS(.width = SIDE, .height = SIDE, .wavelengths = wavelengths, .supersample = samples,
+             .coarse = coarse, .space = ABBE_RGB_SPACE_XYZ);
   double wanted[3], white[3], got[3] = {0}, lab[2][3];
-  load_plate(stone, thickness_m, beside, &scene);
+  FILLED(abbe_scene, scene, load_plate(stone, thickness_m, beside, &scene));
   integrate(&scene, thickness_m, wanted, white);
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, &image);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+  OWNED(abbe_image, image) = picture_of(renderer);
   for (size_t y = 2; y < SIDE - 2; y++) /* a receiver is in a corner */
     for (size_t x = 2; x < SIDE - 2; x++)
       for (size_t c = 0; c < 3; c++)
@@ -95,9 +87,6 @@ static void hold(const char *stone, double thickness_m, const char *beside, size
                 abbe_difference_ciede2000(lab[0], lab[1]));
   assert_near(dominant_of(got, white), dominant_of(wanted, white), 2);
   assert_true(abbe_difference_ciede2000(lab[0], lab[1]) < 0.75);
-  abbe_image_free(&image);
-  abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 GROUP(make_context, free_context);

@@ -22,28 +22,25 @@ typedef struct agreement {
 } agreement;
 
 static agreement compare(const char *text, int passes) {
-  OWNED(abbe_scene, scene);
-  OWNED(abbe_image, drawn);
-  OWNED(abbe_image, traced);
   abbe_render_desc desc = small_frame;
   desc.photons = 128;
   desc.map_size = SIDE;
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   desc.exits = 16;
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   const abbe_statistics statistics = draw_frame(renderer);
-  read_map(renderer, 0, &drawn);
+  OWNED(abbe_image, drawn) = map_of(renderer, 0);
   abbe_renderer_free(renderer);
   abbe_map_layout layout;
   OK(abbe_map_layout_read(&drawn, "drawn", &layout, &error));
-  abbe_tracer *tracer = make_tracer(&scene, &(abbe_trace_desc){.no_picture = true,
-                                                               .map_width = SIDE,
-                                                               .map_height = SIDE,
-                                                               .layout = &layout,
-                                                               .photons = 1 << 17,
-                                                               .space = ABBE_RGB_SPACE_XYZ});
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &(abbe_trace_desc){.no_picture = true,
+                                                                     .map_width = SIDE,
+                                                                     .map_height = SIDE,
+                                                                     .layout = &layout,
+                                                                     .photons = 1 << 17,
+                                                                     .space = ABBE_RGB_SPACE_XYZ});
   run_passes(tracer, passes);
-  OK(abbe_tracer_map(tracer, &traced, &error));
+  MADE(abbe_image, traced, abbe_tracer_map(tracer, &traced, &error));
   double a[BLOCKS * BLOCKS], b[BLOCKS * BLOCKS];
   sum_blocks(&drawn, a);
   sum_blocks(&traced, b);
@@ -60,7 +57,6 @@ static agreement compare(const char *text, int passes) {
   found.trapped = statistics.energy.trapped / found.light;
   print_message("%.4f of the tracer's light, %.4f given up, %.4f of it elsewhere\n", found.energy,
                 found.trapped, found.apart);
-  abbe_tracer_free(tracer);
   return found;
 }
 
@@ -92,21 +88,20 @@ TEST(a_ball_in_another) {
  * glass. */
 TEST(a_cup_of_water) {
   check(CAMERA POINT_LIGHT FLOOR
-        "- {name: cup, shape: lathe, around: 48, profile: [[0, 0], [0.06, 0], [0.06, 0.12],"
-        " [0.05, 0.12], [0.05, 0.01], [0, 0.01]],"
-        " transform: [{translate: [0, 0, 0.1]}], material: crown}\n"
-        "- {name: water, shape: lathe, around: 48, profile: [[0, 0], [0.055, 0], [0.055, 0.08],"
-        " [0, 0.08]], transform: [{translate: [0, 0, 0.105]}], material: flat}\n",
+        "- {name: cup, shape: lathe, around: 48, profile: [[0, 0], [0.06, 0], [0.06, 0.12], [0.05, "
+        "0.12], [0.05, 0.01], [0, 0.01]], transform: [{translate: [0, 0, 0.1]}], material: crown}\n"
+        "- {name: water, shape: lathe, around: 48, profile: [[0, 0], [0.055, 0], [0.055, 0.08], "
+        "[0, 0.08]], transform: [{translate: [0, 0, 0.105]}], material: flat}\n",
         MAX_PASSES, 1e-3);
 }
 
 /* Light comes to the wall from the pane's mirror alone. */
 TEST(the_outside_alone) {
   check("materials: glass.yaml\ncamera: {eye: [-1, -1, 0.5], target: [0, 0, 0.05]}\n"
-        "lights:\n- {name: lamp, kind: spot, position: [-0.5, 0, 0.6], target: [0, 0, 0.1],"
-        " cone: 12, intensity: 1}\n"
-        "objects:\n- {name: brick, shape: box, size: [0.3, 0.3, 0.1], transform: [{translate: "
-        "[0, 0, 0.05]}], material: smoke}\n"
+        "lights:\n- {name: lamp, kind: spot, position: [-0.5, 0, 0.6], target: [0, 0, 0.1], cone: "
+        "12, intensity: 1}\n"
+        "objects:\n- {name: brick, shape: box, size: [0.3, 0.3, 0.1], transform: [{translate: [0, "
+        "0, 0.05]}], material: smoke}\n"
         "- {name: wall, shape: rectangle, width: 2, height: 2, reflectance: 0.5, transform: "
         "[{rotate: {axis: [0, 1, 0], angle: -90}}, {translate: [0.6, 0, 1.12]}]}\n",
         4, 1e-4);
@@ -153,10 +148,10 @@ TEST(parts_of_one_stuff_have_no_wall) {
   ", 0, 0.2]}], material: dense}\n"
   const agreement two =
       compare(CAMERA POINT_LIGHT FLOOR HALF("a", "-0.04") HALF("b", "0.04"), MAX_PASSES);
-  const agreement one = compare(CAMERA POINT_LIGHT FLOOR
-                                "- {name: one, shape: box, size: [0.161, 0.08, 0.06], transform: "
-                                "[{translate: [0, 0, 0.2]}], material: dense}\n",
-                                MAX_PASSES);
+  const agreement one =
+      compare(CAMERA POINT_LIGHT FLOOR "- {name: one, shape: box, size: [0.161, 0.08, 0.06], "
+                                       "transform: [{translate: [0, 0, 0.2]}], material: dense}\n",
+              MAX_PASSES);
   assert_near(two.light / one.light, 1, 0.005);
   assert_near(two.energy, one.energy, 0.01);
 }
@@ -169,26 +164,23 @@ TEST(parts_of_one_stuff_have_no_wall) {
 static void check_stones(const char *stones, const char *eye, const char *target, const char *fov,
                          int looks) {
   char text[1024];
-  abbe_scene scene;
-  abbe_image drawn, traced;
-  snprintf(text, sizeof text,
-           "materials: glass.yaml\nambient: 3\n"
-           "camera: {eye: %s, target: %s, up: [0, 1, 0.3], fov: %s}\n"
-           "lights:\n- {name: aside, kind: spot, position: [3, 3, 1], target: [4, 4, 0], cone: 5,"
-           " intensity: 1}\n"
-           "objects:\n%s"
-           "- {name: paper, shape: rectangle, width: 2, height: 2, reflectance: 0.85}\n",
-           eye, target, fov, stones);
-  load_text(text, &scene);
+  snprintf(
+      text, sizeof text,
+      "materials: glass.yaml\nambient: 3\n"
+      "camera: {eye: %s, target: %s, up: [0, 1, 0.3], fov: %s}\n"
+      "lights:\n- {name: aside, kind: spot, position: [3, 3, 1], target: [4, 4, 0], cone: 5, "
+      "intensity: 1}\n"
+      "objects:\n%s- {name: paper, shape: rectangle, width: 2, height: 2, reflectance: 0.85}\n",
+      eye, target, fov, stones);
+  OWNED(abbe_scene, scene) = scene_of(text);
   abbe_render_desc desc = small_frame;
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, &drawn);
+  abbe_renderer *renderer = drawn_renderer(&scene, &desc);
+  OWNED(abbe_image, drawn) = picture_of(renderer);
   abbe_renderer_free(renderer);
-  abbe_tracer *tracer = make_tracer(
+  HELD(abbe_tracer, tracer) = make_tracer(
       &scene, &(abbe_trace_desc){.no_map = true, .width = 64, .height = 64, .photons = 1});
   run_passes(tracer, looks);
-  OK(abbe_tracer_picture(tracer, &traced, &error));
+  MADE(abbe_image, traced, abbe_tracer_picture(tracer, &traced, &error));
   const double noise = abbe_tracer_error(tracer) / 64; /* of the mean of 64 x 64 pixels */
   for (size_t k = 0; k < 3; k++) {
     static const char *const names[] = {"R", "G", "B"};
@@ -198,10 +190,6 @@ static void check_stones(const char *stones, const char *eye, const char *target
     assert_true(noise < 0.004);
     assert_near(ratio, 1, 0.02);
   }
-  abbe_tracer_free(tracer);
-  abbe_image_free(&drawn);
-  abbe_image_free(&traced);
-  abbe_scene_free(&scene);
 }
 
 TEST(a_stone_face_up) {
@@ -230,14 +218,14 @@ static void add_strips(const char *refractors, char *text, size_t size) {
       text, size,
       "materials: glass.yaml\nambient: 3\n"
       "camera: {eye: [0, -0.6, 0.5], target: [0, 0, 0.1], up: [0, 0, 1], fov: 16, inside: true}\n"
-      "lights:\n" ASIDE "objects:\n%s"
-      "- {name: white, shape: rectangle, width: 9, height: 9, reflectance: 0.9,\n"
+      "lights:\n" ASIDE
+      "objects:\n%s- {name: white, shape: rectangle, width: 9, height: 9, reflectance: 0.9,\n"
       "   transform: [{translate: [0, 1, -1]}]}\n",
       refractors);
   for (int i = 0; i < 12; i++)
     used += snprintf(text + used, size - (size_t)used,
-                     "- {name: strip %d, shape: rectangle, width: 0.2, height: 9, reflectance: 0,"
-                     " transform: [{translate: [%g, 1, -0.99]}]}\n",
+                     "- {name: strip %d, shape: rectangle, width: 0.2, height: 9, reflectance: 0, "
+                     "transform: [{translate: [%g, 1, -0.99]}]}\n",
                      i, 0.4 * i - 2.3);
 }
 
@@ -256,37 +244,29 @@ static double tints(const abbe_image *a, const abbe_image *b) {
 
 static abbe_image traced_picture(const abbe_scene *scene, uint32_t seed) {
   abbe_image image;
-  abbe_tracer *tracer = make_tracer(
+  HELD(abbe_tracer, tracer) = make_tracer(
       scene, &(abbe_trace_desc){
                  .no_map = true, .width = SIDE, .height = SIDE, .photons = 1, .seed = seed});
   run_passes(tracer, 24);
   OK(abbe_tracer_picture(tracer, &image, &error));
-  abbe_tracer_free(tracer);
   return image;
 }
 
 /* Noise of two traces knows nothing of each other, nor of what is drawn. */
 static void check_tints(const char *text) {
-  abbe_scene scene;
-  abbe_image drawn;
   abbe_render_desc desc = small_frame;
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   desc.width = desc.height = SIDE;
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, &drawn);
+  abbe_renderer *renderer = drawn_renderer(&scene, &desc);
+  OWNED(abbe_image, drawn) = picture_of(renderer);
   abbe_renderer_free(renderer);
-  abbe_image one = traced_picture(&scene, 1), other = traced_picture(&scene, 2);
+  OWNED(abbe_image, one) = traced_picture(&scene, 1), other = traced_picture(&scene, 2);
   const double traced = tints(&one, &other), own = tints(&drawn, &drawn);
   const double shared = 0.5 * (tints(&drawn, &one) + tints(&drawn, &other));
   print_message("of the tracer's tints %.3f are drawn, of what is drawn %.3f is traced\n",
                 shared / traced, shared / own);
   assert_true(shared > 0 && shared > 0.45 * traced);
   assert_true(shared > 0.45 * own);
-  abbe_image_free(&one);
-  abbe_image_free(&other);
-  abbe_image_free(&drawn);
-  abbe_scene_free(&scene);
 }
 
 /* Air has no dispersion, but beside glass. A card's edge is seen through it. */
@@ -302,18 +282,18 @@ TEST(a_bubble_seen_from_inside_glass) {
 
 TEST(glass_behind_what_does_not_disperse) {
   char text[4096];
-  add_strips("- {name: near, shape: sphere, radius: 0.07, material: flat, transform: "
-             "[{translate: [0, -0.2, 0.23]}]}\n"
-             "- {name: far, shape: sphere, radius: 0.07, material: crown, transform: "
-             "[{translate: [0, 0, 0.1]}]}\n",
+  add_strips("- {name: near, shape: sphere, radius: 0.07, material: flat, transform: [{translate: "
+             "[0, -0.2, 0.23]}]}\n"
+             "- {name: far, shape: sphere, radius: 0.07, material: crown, transform: [{translate: "
+             "[0, 0, 0.1]}]}\n",
              text, sizeof text);
   check_tints(text);
 }
 
 TEST(a_ball_from_its_inside) {
   char text[4096];
-  add_strips("- {name: ball, shape: sphere, radius: 0.3, material: crown, transform: "
-             "[{translate: [0.1, -0.6, 0.4]}]}\n",
+  add_strips("- {name: ball, shape: sphere, radius: 0.3, material: crown, transform: [{translate: "
+             "[0.1, -0.6, 0.4]}]}\n",
              text, sizeof text);
   check_tints(text);
 }

@@ -15,50 +15,37 @@ static bool count_calls(void *user, double done) {
 }
 
 static void assert_picture_again(abbe_renderer *renderer, const abbe_image *before) {
-  OWNED(abbe_image, after) = {0};
-  read_picture(renderer, false, &after);
+  OWNED(abbe_image, after) = picture_of(renderer);
   assert_same_pixels(before, &after);
 }
 
 GROUP(make_context, free_context);
 
 TEST(a_frame_can_be_stopped_and_drawn_again) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_image, before) = {0};
   int calls = 0;
   double last = 0;
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
-  draw_frame(renderer);
-  read_picture(renderer, false, &before);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &small_frame);
+  OWNED(abbe_image, before) = picture_of(renderer);
   abbe_renderer_redraw(renderer);
   REFUSED(ABBE_CANCELLED, "", abbe_renderer_frame(renderer, stop_now, &calls, NULL, &error));
   assert_int_equal(calls, 1);
   OK(abbe_renderer_frame(renderer, count_calls, &last, NULL, &error));
   assert_near(last, 1, 0);
   assert_picture_again(renderer, &before);
-  abbe_renderer_free(renderer);
 }
 
 TEST(the_baseline_leaves_the_picture) {
   for (size_t samples = 1; samples <= 2; samples++) {
-    OWNED(abbe_scene, scene) = {0};
-    OWNED(abbe_image, before) = {0};
     double ms = 0;
-    load_shipped("sphere", &scene);
-    const abbe_render_desc desc = {.width = 32,
-                                   .height = 32,
-                                   .photons = 32,
-                                   .map_size = 64,
-                                   .wavelengths = 3,
-                                   .supersample = samples};
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
-    draw_frame(renderer);
-    read_picture(renderer, false, &before);
+    OWNED(abbe_scene, scene) = shipped_scene("sphere");
+    const abbe_render_desc desc = FIELDS(.width = 32, .height = 32, .photons = 32, .map_size = 64,
+                                         .wavelengths = 3, .supersample = samples);
+    HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+    OWNED(abbe_image, before) = picture_of(renderer);
     OK(abbe_renderer_baseline(renderer, &ms, &error));
     assert_true(ms > 0);
     assert_picture_again(renderer, &before);
-    abbe_renderer_free(renderer);
   }
 }
 
@@ -67,16 +54,10 @@ TEST(the_baseline_leaves_the_picture) {
  * for what is left. */
 TEST(fewer_samples_than_pixels) {
   enum { KINDS = 5 };
-  OWNED(abbe_scene, scene) = {0};
   abbe_image coarse = {0}, half = {0}, odd = {0}, fine = {0}, moving = {0};
-  load_shipped("sphere", &scene);
-  abbe_render_desc desc = {.width = 64,
-                           .height = 48,
-                           .photons = 32,
-                           .map_size = 64,
-                           .wavelengths = 3,
-                           .aovs = true,
-                           .upsample = 2};
+  OWNED(abbe_scene, scene) = shipped_scene("sphere");
+  abbe_render_desc desc = FIELDS(.width = 64, .height = 48, .photons = 32, .map_size = 64,
+                                 .wavelengths = 3, .aovs = true, .upsample = 2);
   abbe_image *const out[KINDS] = {&coarse, &half, &odd, &fine, &moving};
   const size_t sizes[KINDS][2] = {{64, 48}, {32, 24}, {63, 47}, {63, 47}, {64, 48}},
                up[KINDS] = {2, 1, 2, 1, 2};
@@ -87,10 +68,8 @@ TEST(fewer_samples_than_pixels) {
     desc.supersample = i == 3 ? 4 : 1;
     desc.adaptive = i == 1 ? 1 : 0; /* as with upsample */
     desc.coarse = i == 4 ? ABBE_COARSE_EYE : ABBE_COARSE_NONE;
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
-    draw_frame(renderer);
-    read_picture(renderer, true, out[i]);
-    abbe_renderer_free(renderer);
+    HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+    *out[i] = aovs_of(renderer);
   }
   double worst = 0;
   for (size_t y = 0; y < 48; y++)
@@ -128,20 +107,17 @@ TEST(fewer_samples_than_pixels) {
 /* A map laid out as another of the same scene is that map, to the bit; with half the texels a side
  * its energy is the same, and each light has a map of its own. */
 TEST(a_map_takes_a_given_layout) {
-  OWNED(abbe_scene, scene);
   abbe_image fitted, again, half;
   abbe_map_layout first, layout, given;
-  load_text(
+  OWNED(abbe_scene, scene) = scene_of(
       CAMERA POINT_LIGHT
       "- {name: sun, kind: directional, direction: [0.1, 0.2, -1], irradiance: 1}\n" FLOOR BALL(
-          "crown") HILL,
-      &scene);
+          "crown") HILL);
   abbe_render_desc desc = small_frame;
   for (size_t light = 0; light < 2; light++) {
     desc.map_layout = NULL;
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
-    draw_frame(renderer);
-    read_map(renderer, light, &fitted);
+    abbe_renderer *renderer = drawn_renderer(&scene, &desc);
+    fitted = map_of(renderer, light);
     abbe_renderer_map_layout(renderer, light, &layout);
     abbe_renderer_map_layout(renderer, 1 - light, &first);
     abbe_renderer_free(renderer);
@@ -155,7 +131,7 @@ TEST(a_map_takes_a_given_layout) {
     desc.map_layout_light = light;
     renderer = make_renderer(&scene, &desc);
     draw_frame(renderer);
-    read_map(renderer, light, &again);
+    again = map_of(renderer, light);
     assert_same_pixels(&fitted, &again);
     abbe_renderer_map_layout(renderer, 1 - light, &given);
     assert_true(abbe_map_layout_same(&first, &given)); /* the other light's is fitted */
@@ -165,7 +141,7 @@ TEST(a_map_takes_a_given_layout) {
     given = layout;
     renderer = make_renderer(&scene, &desc);
     draw_frame(renderer);
-    read_map(renderer, light, &half);
+    half = map_of(renderer, light);
     /* Light at the rim is spread bilinearly past it from coarser texels: under a thousandth. */
     assert_near(image_sum(&half, 1) / image_sum(&fitted, 1), 1, 1e-3);
     abbe_renderer_free(renderer);
@@ -177,11 +153,10 @@ TEST(a_map_takes_a_given_layout) {
 }
 
 TEST(what_is_not_there_is_refused) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_image map = {0};
   abbe_renderer *renderer = NULL;
   const abbe_render_desc huge = {.photons = ABBE_RENDER_MAX_PHOTONS + 1};
-  load_text(CAMERA POINT_LIGHT FLOOR, &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR);
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_renderer_make(context, &scene, &huge, &renderer, &error));
   assert_null(renderer);
   renderer = make_renderer(&scene, &small_frame);
@@ -195,11 +170,10 @@ TEST(what_is_not_there_is_refused) {
 
 /* What was not drawn is not black. */
 TEST(nothing_is_read_before_a_frame) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_image image = {0};
   int calls = 0;
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &small_frame);
   for (int turn = 0; turn < 2; turn++) {
     REFUSED(ABBE_INVALID_ARGUMENT, "no frame has been drawn",
             abbe_renderer_read(renderer, false, &image, &error));
@@ -210,36 +184,26 @@ TEST(nothing_is_read_before_a_frame) {
     assert_null(image.data);
     if (turn > 0) continue;
     draw_frame(renderer);
-    read_picture(renderer, false, &image);
+    image = picture_of(renderer);
     abbe_image_free(&image);
     /* Nor what a frame that was stopped has left. */
     abbe_renderer_redraw(renderer);
     REFUSED(ABBE_CANCELLED, "", abbe_renderer_frame(renderer, stop_now, &calls, NULL, &error));
   }
-  abbe_renderer_free(renderer);
 }
 
 /* Textures of what moves have a row and a column more where sides are powers of two
  * (camera_view.h), and layers are looked up in the part that is drawn. */
 TEST(layers_of_what_moves) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_image image[2];
-  abbe_render_desc desc = {.width = 64,
-                           .height = 64,
-                           .photons = 32,
-                           .map_size = 64,
-                           .wavelengths = 3,
-                           .supersample = 1,
-                           .adaptive = 1,
-                           .energy_share = ABBE_COARSE_SHARE,
-                           .model = ABBE_MODEL_LAYERS};
-  load_shipped("gem", &scene);
+  abbe_render_desc desc = FIELDS(.width = 64, .height = 64, .photons = 32, .map_size = 64,
+                                 .wavelengths = 3, .supersample = 1, .adaptive = 1,
+                                 .energy_share = ABBE_COARSE_SHARE, .model = ABBE_MODEL_LAYERS);
+  OWNED(abbe_scene, scene) = shipped_scene("gem");
   for (size_t i = 0; i < 2; i++) {
     desc.coarse = i == 0 ? ABBE_COARSE_NONE : ABBE_COARSE_EYE;
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
-    draw_frame(renderer);
-    read_picture(renderer, true, &image[i]);
-    abbe_renderer_free(renderer);
+    HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+    image[i] = aovs_of(renderer);
   }
   double apart = 0, light = 0;
   for (size_t i = 0; i < 64 * 64; i++) {
@@ -257,16 +221,10 @@ TEST(layers_of_what_moves) {
  * share is no more than a device has, beside mirrors too. */
 TEST(programs_of_what_moves_link) {
   static const char *const names[] = {"metal-ring", "metals", "octahedra"};
-  const abbe_render_desc desc = {.width = 32,
-                                 .height = 32,
-                                 .photons = 16,
-                                 .map_size = 32,
-                                 .upsample = 2,
-                                 .coarse = ABBE_COARSE_ALL};
+  const abbe_render_desc desc = FIELDS(.width = 32, .height = 32, .photons = 16, .map_size = 32,
+                                       .upsample = 2, .coarse = ABBE_COARSE_ALL);
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-    OWNED(abbe_scene, scene) = {0};
-    load_shipped(names[i], &scene);
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
-    abbe_renderer_free(renderer);
+    OWNED(abbe_scene, scene) = shipped_scene(names[i]);
+    HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
   }
 }

@@ -21,8 +21,8 @@ enum {
 static const char text[] = CAMERA
     "lights:\n"
     "- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: 1}\n"
-    "- {name: spot, kind: spot, position: [-0.4, 0, 0.7], target: [0, 0, 0.2], intensity: 2,"
-    " cone: 40, soft: 5}\n"
+    "- {name: spot, kind: spot, position: [-0.4, 0, 0.7], target: [0, 0, 0.2], intensity: 2, cone: "
+    "40, soft: 5}\n"
     "- {name: sun, kind: directional, direction: [0.1, 0.2, -1], irradiance: 1}\n" FLOOR BALL(
         "murk") BRICK("crown");
 
@@ -136,11 +136,7 @@ static void edit(edited *e, size_t i) {
 }
 
 static void inputs_of(const edited *e, abbe_renderer_inputs *out) {
-  OWNED(abbe_plan, plan);
-  abbe_error error = {0};
-  const abbe_result result = abbe_plan_make(&e->scene, &e->desc, &plan, &error);
-  if (result != ABBE_OK) print_error("%s\n", error.text);
-  assert_int_equal(result, ABBE_OK);
+  MADE(abbe_plan, plan, abbe_plan_make(&e->scene, &e->desc, &plan, &error));
   abbe_renderer_inputs_of(&e->scene, &plan, out);
 }
 
@@ -157,7 +153,7 @@ TEST(each_field_is_of_its_parts) {
   edited e = {.desc = {.width = 32, .height = 32, .photons = 32, .map_size = 64}};
   abbe_renderer_inputs before, after;
   int wrong = 0;
-  load_text(text, &e.scene);
+  e.scene = scene_of(text);
   inputs_of(&e, &before);
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     edit(&e, i);
@@ -180,14 +176,13 @@ TEST(each_field_is_of_its_parts) {
 TEST(absorption_along_each_axis_is_of_the_spectra) {
   edited e = {.desc = {.width = 32, .height = 32, .photons = 32, .map_size = 64}};
   abbe_renderer_inputs before, after;
-  load_text("camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR BALL(
-                "tourmaline-green"),
-            &e.scene);
+  e.scene = scene_of("camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR BALL(
+      "tourmaline-green"));
   inputs_of(&e, &before);
   abbe_material *crystal = glass_of(&e);
   abbe_spectrum *z = crystal->attenuation_yz[1], *other = NULL;
   const size_t count = abbe_spectrum_count(z);
-  double *value = calloc(count, sizeof *value);
+  FREED double *value = calloc(count, sizeof *value);
   for (size_t i = 0; i < count; i++) value[i] = 1.001 * abbe_spectrum_value(z)[i];
   OK(abbe_spectrum_make(abbe_spectrum_lambda_nm(z), value, count, abbe_spectrum_interpolation(z),
                         &other, &error));
@@ -196,7 +191,6 @@ TEST(absorption_along_each_axis_is_of_the_spectra) {
   assert_int_equal(abbe_renderer_inputs_differ(&before, &after), SPECTRA | WAY);
   crystal->attenuation_yz[1] = z;
   abbe_spectrum_free(other);
-  free(value);
   abbe_scene_free(&e.scene);
 }
 
@@ -204,9 +198,8 @@ TEST(absorption_along_each_axis_is_of_the_spectra) {
 TEST(lines_of_lights_are_of_the_spectra) {
   edited e = {.desc = {.width = 32, .height = 32, .photons = 32, .map_size = 64}};
   abbe_renderer_inputs even, lines;
-  load_text(CAMERA "lights: [{name: lamp, kind: point, position: [0, 0, 0.6], intensity: 1, "
-                   "illuminant: sodium}]\n" FLOOR BALL("crown"),
-            &e.scene);
+  e.scene = scene_of(CAMERA "lights: [{name: lamp, kind: point, position: [0, 0, 0.6], intensity: "
+                            "1, illuminant: sodium}]\n" FLOOR BALL("crown"));
   inputs_of(&e, &lines);
   e.desc.wavelengths = 2;
   inputs_of(&e, &even);

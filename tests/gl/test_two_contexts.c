@@ -32,11 +32,11 @@ static abbe_renderer *make_on(abbe_context *on, int scene) {
 }
 
 static void take(abbe_renderer *renderer, taken *out) {
-  read_picture(renderer, false, &out->picture);
-  read_map(renderer, 0, &out->map);
+  out->picture = picture_of(renderer);
+  out->map = map_of(renderer, 0);
 }
 
-static void free_taken(taken *t) {
+static void taken_free(taken *t) {
   abbe_image_free(&t->picture);
   abbe_image_free(&t->map);
 }
@@ -53,7 +53,7 @@ static void take_alone(int scene, taken *out) {
 
 static void draw_alone(void) {
   for (int i = 0; i < SCENES; i++) {
-    load_text(texts[i], &scenes[i]);
+    scenes[i] = scene_of(texts[i]);
     take_alone(i, &alone[i]);
   }
 }
@@ -61,17 +61,15 @@ static void draw_alone(void) {
 static void free_alone(void) {
   for (int i = 0; i < SCENES; i++) {
     abbe_scene_free(&scenes[i]);
-    free_taken(&alone[i]);
+    taken_free(&alone[i]);
   }
 }
 
 static void assert_draws(abbe_renderer *renderer, const taken *expected, bool anew) {
-  taken now = {0};
   if (anew) draw_frame(renderer);
-  take(renderer, &now);
+  FILLED(taken, now, take(renderer, &now));
   assert_same_pixels(&now.picture, &expected->picture);
   assert_same_pixels(&now.map, &expected->map);
-  free_taken(&now);
 }
 
 GROUP(draw_alone, free_alone);

@@ -109,7 +109,7 @@ static void load_bench(const setting *s, const bench *b, double middle, double w
       inradius * sin(incidence), 2 * jaw, jaw + slit / 2, 2 * jaw, -jaw - slit / 2, width,
       atan2(b->along[1], b->along[0]) * 180 / ABBE_PI, b->wall[0] + middle * b->along[0],
       b->wall[1] + middle * b->along[1]);
-  load_text(text, out);
+  *out = scene_of(text);
 }
 
 /* Along the wall from its middle, m. */
@@ -121,13 +121,11 @@ static double place_of_texel(const bench *b, const abbe_map_layout *layout, cons
 
 static void assert_bands_in_place(const setting *s, const abbe_render_desc *desc) {
   bench b;
-  OWNED(abbe_scene, scene) = {0};
   abbe_map_layout layout;
-  OWNED(abbe_image, map) = {0};
   double ends[2], flux;
   make_bench(s, &b);
   /* The glass is known once a scene is loaded. */
-  load_bench(s, &b, 0, 1, &scene);
+  FILLED(abbe_scene, scene, load_bench(s, &b, 0, 1, &scene));
   for (int k = 0; k < 2; k++)
     ends[k] = band_in_closed_form(&b, scene.object[0].material, k ? 779.99 : 380, k ? 780 : 380.01,
                                   &flux);
@@ -135,10 +133,9 @@ static void assert_bands_in_place(const setting *s, const abbe_render_desc *desc
   const double width = fabs(ends[1] - ends[0]);
   load_bench(s, &b, 0.5 * (ends[0] + ends[1]), 1.2 * width + 0.02, &scene);
   look_aside(&scene);
-  abbe_renderer *renderer = make_renderer(&scene, desc);
-  draw_frame(renderer);
+  abbe_renderer *renderer = drawn_renderer(&scene, desc);
   abbe_renderer_map_layout(renderer, 0, &layout);
-  OK(abbe_renderer_read_map_bands(renderer, 0, BANDS, &map, &error));
+  MADE(abbe_image, map, abbe_renderer_read_map_bands(renderer, 0, BANDS, &map, &error));
   abbe_renderer_free(renderer);
   double worst = 0, worst_nm = 0, worst_flux = 0;
   const size_t texels = map.width * map.height;
@@ -166,10 +163,9 @@ static void assert_bands_in_place(const setting *s, const abbe_render_desc *desc
     if (fabs(off) > fabs(worst)) worst = off, worst_nm = from;
     if (fabs(light) > fabs(worst_flux)) worst_flux = light;
   }
-  print_message(
-      "%s, wall at %g m, slanted by %g: a spectrum of %.0f mm, worst at %.0f nm by %.3f mm; light "
-      "%.2f %%\n",
-      s->glass, s->wall, s->slant, 1e3 * width, worst_nm, 1e3 * worst, 100 * worst_flux);
+  print_message("%s, wall at %g m, slanted by %g: a spectrum of %.0f mm, worst at %.0f nm by %.3f "
+                "mm; light %.2f %%\n",
+                s->glass, s->wall, s->slant, 1e3 * width, worst_nm, 1e3 * worst, 100 * worst_flux);
   /* Bands lie in their places to a fifth of a millimetre, or to an eighth of a texel where those
    * are wide. */
   assert_near(worst, 0, fmax(2e-4, 0.125 * (1.2 * width + 0.02) / (double)map.width));

@@ -54,17 +54,13 @@ static void go(search *s, size_t v) {
 }
 
 size_t graph_circles(const graph *g, size_t *circle) {
-  size_t *room = calloc(3 * g->count + 1, sizeof *room);
+  FREED size_t *room = calloc(3 * g->count + 1, sizeof *room);
   assert_non_null(room);
-  search s = {.g = g,
-              .order = room,
-              .low = room + g->count,
-              .stack = room + 2 * g->count,
-              .circle = circle};
+  search s = FIELDS(.g = g, .order = room, .low = room + g->count, .stack = room + 2 * g->count,
+                    .circle = circle);
   memset(circle, 0, g->count * sizeof *circle);
   for (size_t v = 0; v < g->count; v++)
     if (s.order[v] == 0) go(&s, v);
-  free(room);
   return s.circles;
 }
 
@@ -84,7 +80,8 @@ static void say_node(const graph *g, const size_t *circle, size_t v, const char 
 }
 
 size_t graph_judge(const graph *g, const char *const *exceptions, const char *title) {
-  size_t *circle = calloc(g->count + 1, sizeof *circle), wrong = 0;
+  FREED size_t *circle = calloc(g->count + 1, sizeof *circle);
+  size_t wrong = 0;
   assert_non_null(circle);
   graph_circles(g, circle);
   for (size_t v = 0; v < g->count; v++) {
@@ -101,6 +98,5 @@ size_t graph_judge(const graph *g, const char *const *exceptions, const char *ti
                 exceptions[i]);
     wrong++;
   }
-  free(circle);
   return wrong;
 }

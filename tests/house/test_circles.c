@@ -35,18 +35,16 @@ static void add_symbol(void *user, const char *from, const char *to, const char 
 }
 
 TEST(the_house_has_no_circles) {
-  sources all;
-  symbols names;
   graph files = {0};
   graphs g = {0};
-  sources_read(&all);
+  FILLED(sources, all, sources_read(&all));
   for (size_t i = 0; i < all.count; i++)
     for (size_t k = 0; k < all.file[i].include_count; k++) {
       const char *from = all.file[i].path, *to = whole_path(&all, all.file[i].include[k].name);
       graph_add(&files, from, to, "an include");
       add_folders(&g.folders, from, to, to);
     }
-  symbols_read(ABBE_NM, ABBE_OBJECT_LIST, &names);
+  FILLED(symbols, names, symbols_read(ABBE_NM, ABBE_OBJECT_LIST, &names));
   symbols_edges(&names, add_symbol, &g);
   size_t wrong = graph_judge(&files, none, "files by includes");
   wrong += graph_judge(&g.objects, none, "objects by symbols");
@@ -57,8 +55,6 @@ TEST(the_house_has_no_circles) {
   graph_free(&files);
   graph_free(&g.objects);
   graph_free(&g.folders);
-  symbols_free(&names);
-  sources_free(&all);
   assert_int_equal(wrong, 0);
 }
 
@@ -107,12 +103,11 @@ TEST(circles_are_found_and_only_they) {
 }
 
 TEST(exceptions_are_few_and_needed) {
-  graph g = GRAPH({"a", "b"}, {"b", "a"}, {"b", "c"});
+  OWNED(graph, g) = GRAPH({"a", "b"}, {"b", "a"}, {"b", "c"});
   assert_int_equal(graph_judge(&g, (const char *const[]){"a", "b", NULL}, "known"), 0);
   print_message("the next lines are of graphs made wrong on purpose\n");
   assert_int_equal(graph_judge(&g, none, "on purpose"), 2);
   assert_int_equal(graph_judge(&g, (const char *const[]){"a", NULL}, "on purpose"), 1);
   assert_int_equal(graph_judge(&g, (const char *const[]){"a", "b", "c", NULL}, "on purpose"), 1);
   assert_int_equal(graph_judge(&g, (const char *const[]){"a", "b", "gone", NULL}, "on purpose"), 1);
-  graph_free(&g);
 }

@@ -74,16 +74,14 @@ static size_t judge_file(const source_file *f) {
 }
 
 TEST(the_sources_keep_the_directions) {
-  sources all;
   size_t wrong = 0, files = 0, includes = 0;
-  sources_read(&all);
+  FILLED(sources, all, sources_read(&all));
   for (size_t i = 0; i < all.count; i++) {
     if (!is_c(all.file[i].path)) continue;
     files++;
     includes += all.file[i].include_count;
     wrong += judge_file(&all.file[i]);
   }
-  sources_free(&all);
   assert_int_equal(wrong, 0);
   /* The house was read and not an empty folder. */
   assert_true(files > 100);
@@ -155,9 +153,8 @@ static size_t judge_header(const sources *all, const char *header) {
 }
 
 TEST(headers_stay_inside) {
-  sources all;
   size_t wrong = 0, headers = 0;
-  sources_read(&all);
+  FILLED(sources, all, sources_read(&all));
   for (size_t i = 0; i < all.count; i++) {
     const char *path = all.file[i].path;
     if (strcmp(sources_ending(path), "h") != 0 || strcmp(sources_room(path), "tests") == 0)
@@ -165,7 +162,6 @@ TEST(headers_stay_inside) {
     headers++;
     wrong += judge_header(&all, path);
   }
-  sources_free(&all);
   assert_int_equal(wrong, 0);
   assert_true(headers > 200);
 }
@@ -197,11 +193,9 @@ static void judge_edge(void *user, const char *from, const char *to, const char 
 }
 
 TEST(the_objects_keep_the_directions) {
-  symbols all;
   tally t = {0};
-  symbols_read(ABBE_NM, ABBE_OBJECT_LIST, &all);
+  FILLED(symbols, all, symbols_read(ABBE_NM, ABBE_OBJECT_LIST, &all));
   symbols_edges(&all, judge_edge, &t);
-  symbols_free(&all);
   assert_int_equal(t.wrong, 0);
   assert_true(t.edges > 1000);
 }

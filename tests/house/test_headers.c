@@ -50,10 +50,9 @@ static bool own_source_reads_it_first(const char *header) {
 
 TEST(every_header_stands_alone) {
   static headers alone;
-  sources all;
   size_t read = 0, wrong = 0;
   read_alone(&alone);
-  sources_read(&all);
+  FILLED(sources, all, sources_read(&all));
   for (size_t i = 0; i < all.count; i++) {
     const char *path = all.file[i].path;
     if (strcmp(sources_ending(path), "h") != 0 || !sources_has_word(ROOMS, sources_room(path)))
@@ -63,7 +62,6 @@ TEST(every_header_stands_alone) {
     wrong++;
     print_error("%s: its source has to include it first; then configure the build again\n", path);
   }
-  sources_free(&all);
   assert_int_equal(wrong, 0);
   assert_true(read > 250);
   assert_true(alone.count < read / 4);

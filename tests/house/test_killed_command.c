@@ -90,9 +90,8 @@ static bool is_whole(const command *c, const content *whole) {
 
 /* False where the n-th call is past the last one. */
 static bool kill_at(const command *c, const content *whole, size_t n) {
-  char line[2048];
   put_old(c);
-  snprintf(line, sizeof line, "LD_PRELOAD='" ABBE_PRELOAD "' ABBE_FAULT=kill:%zu %s", n, c->line);
+  const char *line = printed("LD_PRELOAD='" ABBE_PRELOAD "' ABBE_FAULT=kill:%zu %s", n, c->line);
   const int code = run_line(line);
   if (code == 0) {
     assert_true(is_whole(c, whole));
@@ -131,8 +130,8 @@ TEST(a_trace) {
 }
 
 TEST(a_picture) {
-  kill_everywhere(&(command){"\"$abbe\" render " SCENE " -q --size 8x8 --photons 16 --map 32 -o "
-                             "r.exr --png r.png",
+  kill_everywhere(&(command){"\"$abbe\" render " SCENE
+                             " -q --size 8x8 --photons 16 --map 32 -o r.exr --png r.png",
                              {"r.exr", "r.png"},
                              "old",
                              NULL,
@@ -150,8 +149,9 @@ TEST(a_table) {
 TEST(any_moment) {
   static const char *const signals[] = {"INT", "TERM", "HUP", "KILL"};
   char line[2048];
-  static const char trace[] = "\"$abbe\" trace " SCENE " -q --size 16x16 --photons 20000 --map 16 "
-                              "--spp 12 --checkpoint-every 0 --resume -o";
+  static const char trace[] =
+      "\"$abbe\" trace " SCENE
+      " -q --size 16x16 --photons 20000 --map 16 --spp 12 --checkpoint-every 0 --resume -o";
   snprintf(line, sizeof line, "%s whole.exr", trace);
   run_must(line);
   content whole = read_whole("whole.exr");
@@ -173,15 +173,12 @@ TEST(any_moment) {
 TEST(asked_to_end) {
   static const char *const signals[] = {"INT", "TERM", "HUP"};
   for (int i = 0; i < 3; i++) {
-    char line[1024];
-    snprintf(
-        line, sizeof line,
-        "\"$abbe\" trace " SCENE " -q --size 8x8 --photons 64 --map 4 --spp 1000000 "
-        "--checkpoint-every 0 -o t.exr & p=$!; while [ ! -e t.exr.checkpoint ]; do sleep 0.02; "
-        "done; kill -%s $p; wait $p",
-        signals[i]);
-    assert_int_equal(run_line(line), 1);
-    assert_contains(run_errors, "with --resume goes on");
+    run_fails(
+        printed("\"$abbe\" trace " SCENE
+                " -q --size 8x8 --photons 64 --map 4 --spp 1000000 --checkpoint-every 0 -o t.exr & "
+                "p=$!; while [ ! -e t.exr.checkpoint ]; do sleep 0.02; done; kill -%s $p; wait $p",
+                signals[i]),
+        1, "with --resume goes on");
     run_must("rm t.exr t.exr.checkpoint");
   }
 }

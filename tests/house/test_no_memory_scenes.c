@@ -43,7 +43,8 @@ static void digest_image(const abbe_image *image) {
 }
 
 static abbe_result exr(abbe_error *error) {
-  abbe_image image = {0}, back = {0};
+  OWNED(abbe_image, image) = {0};
+  abbe_image back = {0};
   const char *path = operation_path("picture.exr");
   abbe_result result = make_image(5, &image, error);
   for (int half = 0; half < 2 && result == ABBE_OK; half++) {
@@ -53,19 +54,16 @@ static abbe_result exr(abbe_error *error) {
     if (result == ABBE_OK) digest_image(&back);
     abbe_image_free(&back);
   }
-  abbe_image_free(&image);
   return result;
 }
 
 static abbe_result png(abbe_error *error) {
-  abbe_image image = {0}, back = {0};
+  OWNED(abbe_image, image) = {0}, back = {0};
   const char *path = operation_path("picture.png");
   abbe_result result = make_image(5, &image, error);
   if (result == ABBE_OK) result = abbe_png_write(path, &image, 16, error);
   if (result == ABBE_OK) result = abbe_png_read(path, &back, error);
   if (result == ABBE_OK) digest_image(&back);
-  abbe_image_free(&back);
-  abbe_image_free(&image);
   return result;
 }
 
@@ -88,38 +86,34 @@ static abbe_result chart(abbe_error *error) {
 }
 
 static abbe_result material_charts(abbe_error *error) {
-  abbe_material_table table;
+  OWNED(abbe_material_table, table) = {0};
   abbe_result result = abbe_material_table_load(FUZZ "parts/table.yaml", &table, error);
   if (result != ABBE_OK) return result;
   const abbe_material *two[] = {&table.material[0], &table.material[1]};
   const abbe_material_chart curves = {.count = 2, .material = two, .fits = true};
   result = abbe_material_chart_write(operation_path("curves.svg"), &curves, error);
-  abbe_material_table_free(&table);
   return result;
 }
 
 static abbe_result weights(abbe_error *error) {
   static const char *const names[] = {"D65", "A", FUZZ "parts/lines.txt"};
-  abbe_wavelengths wavelengths = {0};
+  OWNED(abbe_wavelengths, wavelengths) = {0};
   abbe_result result = abbe_wavelengths_make(7, 400, 700, &wavelengths, error);
   for (int i = 0; i < 3 && result == ABBE_OK; i++) {
-    abbe_illuminant illuminant = {0};
-    abbe_weights made = {0};
+    OWNED(abbe_illuminant, illuminant) = {0};
+    OWNED(abbe_weights, made) = {0};
     result = abbe_illuminant_make(names[i], &illuminant, error);
     if (result == ABBE_OK)
       result = abbe_weights_make(&wavelengths, &illuminant, ABBE_RGB_SPACE_ACESCG, &made, error);
     if (result == ABBE_OK) digest(made.weight, made.count * sizeof *made.weight);
-    abbe_weights_free(&made);
-    abbe_illuminant_free(&illuminant);
   }
-  abbe_wavelengths_free(&wavelengths);
   return result;
 }
 
 static abbe_result display(abbe_error *error) {
   abbe_display *made = NULL;
-  char *list = NULL;
-  abbe_image image = {0};
+  FREED char *list = NULL;
+  OWNED(abbe_image, image) = {0};
   const abbe_display_desc desc = {.exposure = 1};
   abbe_result result = abbe_display_make(&desc, &made, error);
   if (result == ABBE_OK) result = make_image(2, &image, error);
@@ -127,8 +121,6 @@ static abbe_result display(abbe_error *error) {
   if (result == ABBE_OK) digest_image(&image);
   if (result == ABBE_OK) result = abbe_display_list(NULL, &list, error);
   if (result == ABBE_OK) digest_text(list);
-  free(list);
-  abbe_image_free(&image);
   abbe_display_free(made);
   return result;
 }
@@ -166,8 +158,8 @@ static abbe_result meshes(abbe_error *error) {
   static const char *const paths[] = {FUZZ "parts/tetra.obj", FUZZ "parts/open.ply"};
   abbe_result result = ABBE_OK;
   for (int i = 0; i < 2 && result == ABBE_OK; i++) {
-    abbe_mesh mesh = {0};
-    char *what = NULL;
+    OWNED(abbe_mesh, mesh) = {0};
+    FREED char *what = NULL;
     double plane[16][4];
     abbe_convex found = {0};
     result = abbe_mesh_load(paths[i], i == 0 ? ABBE_NORMALS_AUTO : ABBE_NORMALS_FLAT, &mesh, NULL,
@@ -184,8 +176,6 @@ static abbe_result meshes(abbe_error *error) {
     if (result == ABBE_OK) result = abbe_mesh_subdivide(&mesh, 1, error);
     if (result == ABBE_OK) digest_mesh(&mesh);
     if (result == ABBE_OK) digest_text(what);
-    free(what);
-    abbe_mesh_free(&mesh);
   }
   return result;
 }
@@ -197,9 +187,9 @@ static abbe_result fix(abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof names / sizeof *names && result == ABBE_OK; i++) {
     static char path[512];
-    char *data = NULL, *what = NULL;
+    FREED char *data = NULL, *what = NULL;
     size_t size = 0;
-    abbe_mesh mesh = {0};
+    OWNED(abbe_mesh, mesh) = {0};
     snprintf(path, sizeof path, FUZZ "corpus/mesh/%s", names[i]);
     result = abbe_file_read(path, 4096, &data, &size, error);
     if (result == ABBE_OK)
@@ -211,18 +201,14 @@ static abbe_result fix(abbe_error *error) {
     if (result == ABBE_OK)
       result = abbe_mesh_fix(&mesh, ABBE_NORMALS_AUTO, true, NULL, &what, error);
     if (result == ABBE_OK) digest_mesh(&mesh);
-    abbe_mesh *part = NULL;
+    FREED abbe_mesh *part = NULL;
     size_t parts = 0;
     if (result == ABBE_OK) result = abbe_mesh_split(&mesh, &part, &parts, error);
     for (size_t k = 0; part != NULL && k < parts; k++) {
       digest_mesh(&part[k]);
       abbe_mesh_free(&part[k]);
     }
-    free(part);
     if (result == ABBE_OK) digest_text(what);
-    free(what);
-    free(data);
-    abbe_mesh_free(&mesh);
   }
   return result;
 }
@@ -231,16 +217,15 @@ static abbe_result fix(abbe_error *error) {
 
 static abbe_result scene(const char *name, abbe_error *error) {
   static char path[512];
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size = 0;
-  abbe_scene made = {0};
+  OWNED(abbe_scene, made) = {0};
   abbe_plan plan = {0};
   const abbe_render_desc desc = {.min_nm = 400, .max_nm = 700};
   snprintf(path, sizeof path, FUZZ "corpus/scene/%s.yaml", name);
   abbe_result result = abbe_file_read(path, 1 << 16, &text, &size, error);
   if (result == ABBE_OK)
     result = abbe_scene_parse(text, size, FUZZ "parts/f.yaml", NULL, &made, error);
-  free(text);
   for (size_t i = 0; i < made.object_count && result == ABBE_OK; i++)
     digest_mesh(&made.object[i].mesh);
   if (result == ABBE_OK && made.environment != NULL) {
@@ -251,7 +236,6 @@ static abbe_result scene(const char *name, abbe_error *error) {
       digest_text(plan.entry[i].reason);
     abbe_plan_free(&plan);
   }
-  abbe_scene_free(&made);
   return result;
 }
 
@@ -260,14 +244,13 @@ static abbe_result picture(abbe_error *error) {
   char text[1024] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 6 +X 8\n";
   const size_t head = strlen(text);
   const char *path = operation_path("cube.hdr");
-  abbe_environment made = {0};
+  OWNED(abbe_environment, made) = {0};
   for (size_t i = 0; i < 48; i++) memcpy(text + head + 4 * i, "\x80\x40\x20\x80", 4);
   abbe_result result = abbe_file_write(path, text, head + 4 * 48, error);
   if (result == ABBE_OK)
     result = abbe_environment_picture_read(path, ABBE_LAYOUT_BY_ASPECT, &made.map, error);
   if (result == ABBE_OK) result = abbe_environment_prepare(&made, error);
   if (result == ABBE_OK) digest(made.mean, sizeof made.mean);
-  abbe_environment_free(&made);
   return result;
 }
 
@@ -282,10 +265,9 @@ SCENE(glass)
 SCENE(surroundings)
 
 static abbe_result presets(abbe_error *error) {
-  abbe_presets made = {0};
+  OWNED(abbe_presets, made) = {0};
   const abbe_result result = abbe_presets_load(FUZZ "corpus/presets/small.yaml", &made, error);
   if (result == ABBE_OK) digest(made.front[0].named, sizeof made.front[0].named);
-  abbe_presets_free(&made);
   return result;
 }
 
@@ -293,7 +275,7 @@ static abbe_result maps(abbe_error *error) {
   static const double origin[3] = {0, 0, 1}, forward[3] = {0, 0, -1}, up[3] = {0, 1, 0};
   abbe_view view;
   abbe_map_layout layout, back;
-  abbe_image image = {0}, out = {0};
+  OWNED(abbe_image, image) = {0}, out = {0};
   abbe_view_look(origin, forward, up, false, &view);
   const double window[4] = {-1, 1, -1, 1};
   memcpy(view.window, window, sizeof window);
@@ -305,8 +287,6 @@ static abbe_result maps(abbe_error *error) {
   if (result == ABBE_OK) result = abbe_map_layout_read(&image, "it", &back, error);
   if (result == ABBE_OK) result = abbe_map_resample(&image, "it", &back, 3, 3, 2, &out, error);
   if (result == ABBE_OK) digest_image(&out);
-  abbe_image_free(&out);
-  abbe_image_free(&image);
   return result;
 }
 

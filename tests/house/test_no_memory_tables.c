@@ -41,28 +41,24 @@ static abbe_result parse(const char *text, abbe_material_table *table, abbe_erro
 }
 
 static abbe_result load_table(abbe_error *error) {
-  abbe_material_table table;
+  OWNED(abbe_material_table, table) = {0};
   const abbe_result result = abbe_material_table_load(TABLE, &table, error);
   if (result == ABBE_OK) digest_table(&table);
-  abbe_material_table_free(&table);
   return result;
 }
 
 static abbe_result load_shipped(abbe_error *error) {
-  abbe_material_table table;
+  OWNED(abbe_material_table, table) = {0};
   const abbe_result result = abbe_material_table_load(NULL, &table, error);
   if (result == ABBE_OK) digest_table(&table);
-  abbe_material_table_free(&table);
   return result;
 }
 
 static abbe_result import(const char *path, abbe_error *error) {
-  abbe_material_table table = {0};
-  abbe_report report = {0};
+  OWNED(abbe_material_table, table) = {0};
+  OWNED(abbe_report, report) = {0};
   const abbe_result result = abbe_import_load(path, NULL, &table, &report, error);
   if (result == ABBE_OK) digest_table(&table);
-  abbe_material_table_free(&table);
-  abbe_report_free(&report);
   return result;
 }
 
@@ -76,7 +72,7 @@ IMPORT(csv, "csv/plain.csv")
 
 static abbe_result write_as(int kind, const abbe_material_table *table, FILE *to,
                             abbe_error *error) {
-  abbe_report report = {0};
+  OWNED(abbe_report, report) = {0};
   abbe_result result;
   switch (kind) {
   case 0:
@@ -91,30 +87,27 @@ static abbe_result write_as(int kind, const abbe_material_table *table, FILE *to
   default:
     result = abbe_csv_write(&table->material[2], NULL, to, &report, error);
   }
-  abbe_report_free(&report);
   return result;
 }
 
 static abbe_result write_tables(abbe_error *error) {
-  abbe_material_table table;
+  OWNED(abbe_material_table, table) = {0};
   abbe_result result = parse(small, &table, error);
   for (int kind = 0; kind < 4 && result == ABBE_OK; kind++) {
-    char *text = NULL;
+    FREED char *text = NULL;
     size_t size = 0;
     FILE *to = open_memstream(&text, &size);
     result = to != NULL ? write_as(kind, &table, to, error)
                         : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a text");
     if (to != NULL) fclose(to);
     if (result == ABBE_OK) digest(text, size);
-    free(text);
   }
-  abbe_material_table_free(&table);
   return result;
 }
 
 static abbe_result store_table(abbe_error *error) {
   static const char *const names[] = {"b", "nobody"};
-  abbe_material_table table, back = {0};
+  OWNED(abbe_material_table, table) = {0}, back = {0};
   const abbe_material *m = NULL;
   abbe_file_writer writer = {0};
   const char *path = operation_path("table.sqlite");
@@ -123,7 +116,6 @@ static abbe_result store_table(abbe_error *error) {
   if (result == ABBE_OK) result = abbe_material_store_write(&table, writer.stream, error);
   if (result == ABBE_OK) result = abbe_file_writer_commit(&writer, error);
   abbe_file_writer_discard(&writer);
-  abbe_material_table_free(&table);
   if (result == ABBE_OK) result = abbe_material_table_load(path, &back, error);
   if (result == ABBE_OK) digest_table(&back);
   abbe_material_table_free(&back);
@@ -131,28 +123,26 @@ static abbe_result store_table(abbe_error *error) {
   if (result == ABBE_OK) digest_table(&back);
   if (result == ABBE_OK) result = abbe_material_table_find(&back, names[1], &m, error);
   if (result == ABBE_NOT_FOUND) result = ABBE_OK;
-  abbe_material_table_free(&back);
   return result;
 }
 
 static abbe_result import_folder(abbe_error *error) {
   static const char *const paths[] = {CORPUS "agf/maker.agf", CORPUS "rii", CORPUS "agf/wide.agf"};
   const abbe_import_batch batch = {.path = paths, .count = 3, .prefix = "my-"};
-  abbe_material_table table = {0};
-  abbe_report report = {0};
+  OWNED(abbe_material_table, table) = {0};
+  OWNED(abbe_report, report) = {0};
   const abbe_result result = abbe_import_batch_run(&batch, &table, &report, error);
   if (result == ABBE_OK) digest_table(&table);
-  abbe_material_table_free(&table);
-  abbe_report_free(&report);
   return result;
 }
 
 static abbe_result examine(abbe_error *error) {
-  abbe_material_table table, second;
-  abbe_findings findings = {0};
-  abbe_table_difference difference = {0};
+  OWNED(abbe_material_table, table) = {0}, second = {0};
+  OWNED(abbe_findings, findings) = {0};
+  OWNED(abbe_table_difference, difference) = {0};
   const abbe_material_query query = {.sort = ABBE_MATERIAL_KEY_ND};
-  size_t *rows = NULL, count = 0;
+  FREED size_t *rows = NULL;
+  size_t count = 0;
   abbe_result result = parse(small, &table, error);
   const abbe_result both = parse(other, &second, result == ABBE_OK ? error : NULL);
   if (result == ABBE_OK) result = both;
@@ -163,17 +153,12 @@ static abbe_result examine(abbe_error *error) {
   if (result == ABBE_OK) digest(&difference.count, sizeof difference.count);
   if (result == ABBE_OK) result = abbe_material_query_run(&table, &query, &rows, &count, error);
   if (result == ABBE_OK) digest(rows, count * sizeof *rows);
-  free(rows);
-  abbe_table_difference_free(&difference);
-  abbe_findings_free(&findings);
-  abbe_material_table_free(&second);
-  abbe_material_table_free(&table);
   return result;
 }
 
 static abbe_result edit_table(abbe_error *error) {
   abbe_table_edit *edit = NULL;
-  char *diff = NULL, *record = NULL;
+  FREED char *diff = NULL, *record = NULL;
   const char *path = operation_path("edit.yaml");
   abbe_result result = abbe_file_write(path, small, sizeof small - 1, error);
   if (result == ABBE_OK) result = abbe_table_edit_open(path, &edit, error);
@@ -192,8 +177,6 @@ static abbe_result edit_table(abbe_error *error) {
   if (result == ABBE_OK) result = abbe_table_edit_save(edit, error);
   if (result == ABBE_OK) digest_text(diff);
   if (result == ABBE_OK) digest_text(record);
-  free(diff);
-  free(record);
   abbe_table_edit_free(edit);
   return result;
 }
@@ -204,20 +187,19 @@ static abbe_result fix_table(abbe_error *error) {
       "- {name: b, model: tabulated, points: [[0.4, 1.5], [0.5, 1.4]], source: s}\n";
   abbe_table_edit *edit = NULL;
   abbe_table_fix fix;
-  char *diff = NULL;
+  FREED char *diff = NULL;
   abbe_result result = abbe_table_edit_parse(wrong, sizeof wrong - 1, "t", &edit, error);
   if (result == ABBE_OK) result = abbe_table_fix_make(edit, NULL, &fix, error);
   if (result == ABBE_OK) result = abbe_table_edit_diff(edit, &diff, error);
   if (result == ABBE_OK) digest(&fix.fixed, sizeof fix.fixed);
   if (result == ABBE_OK) digest_text(diff);
-  free(diff);
   abbe_table_edit_free(edit);
   return result;
 }
 
 static abbe_result fit(abbe_error *error) {
-  abbe_material_table table;
-  abbe_index_points points = {0};
+  OWNED(abbe_material_table, table) = {0};
+  OWNED(abbe_index_points, points) = {0};
   abbe_fit made;
   abbe_result result = parse(small, &table, error);
   if (result == ABBE_OK)
@@ -228,14 +210,12 @@ static abbe_result fit(abbe_error *error) {
     result = abbe_fit_make(&points, &request, &made, error);
     if (result == ABBE_OK) digest(&made.rms, sizeof made.rms);
   }
-  abbe_index_points_free(&points);
-  abbe_material_table_free(&table);
   return result;
 }
 
 static abbe_result convert(abbe_error *error) {
   const abbe_given given = {.first = 1.5, .second = 60};
-  abbe_material_table table;
+  OWNED(abbe_material_table, table) = {0};
   abbe_dispersion dispersion;
   abbe_convert_error judged;
   abbe_result result = parse(small, &table, error);
@@ -243,22 +223,19 @@ static abbe_result convert(abbe_error *error) {
   if (result == ABBE_OK)
     result = abbe_convert_judge(&given, ABBE_FIT_CAUCHY, &table, 400, 700, &judged, error);
   if (result == ABBE_OK) digest(&judged.largest, sizeof judged.largest);
-  abbe_material_table_free(&table);
   return result;
 }
 
 static abbe_result small_things(abbe_error *error) {
   static const double nm[] = {400, 500, 600}, value[] = {1, 2, 1};
   abbe_spectrum *spectrum = NULL;
-  abbe_wavelengths wavelengths = {0};
-  char *diff = NULL;
+  OWNED(abbe_wavelengths, wavelengths) = {0};
+  FREED char *diff = NULL;
   abbe_result result =
       abbe_spectrum_make(nm, value, 3, ABBE_INTERPOLATION_SPLINE, &spectrum, error);
   if (result == ABBE_OK) result = abbe_wavelengths_make(7, 380, 780, &wavelengths, error);
   if (result == ABBE_OK) result = abbe_text_diff("a\nb\n", 4, "a\nc\nd\n", 6, "f", &diff, error);
   if (result == ABBE_OK) digest_text(diff);
-  free(diff);
-  abbe_wavelengths_free(&wavelengths);
   abbe_spectrum_free(spectrum);
   return result;
 }

@@ -32,14 +32,8 @@ static abbe_result parse_scene(abbe_scene *scene, abbe_error *error) {
                           error);
 }
 
-static const abbe_trace_desc tiny = {.width = 3,
-                                     .height = 2,
-                                     .map_width = 4,
-                                     .map_height = 4,
-                                     .photons = 64,
-                                     .bands = 2,
-                                     .guides = true,
-                                     .threads = 1};
+static const abbe_trace_desc tiny = FIELDS(.width = 3, .height = 2, .map_width = 4, .map_height = 4,
+                                           .photons = 64, .bands = 2, .guides = true, .threads = 1);
 
 static void digest_image(const abbe_image *image) {
   digest(image->data, image->width * image->height * image->channels * sizeof *image->data);
@@ -52,7 +46,7 @@ static abbe_scene shared;
 
 static abbe_result trace(abbe_error *error) {
   abbe_tracer *tracer = NULL;
-  abbe_image picture = {0}, map = {0}, filtered = {0};
+  OWNED(abbe_image, picture) = {0}, map = {0}, filtered = {0};
   abbe_result result = abbe_tracer_make(&shared, &tiny, &tracer, error);
   for (int i = 0; i < 2 && result == ABBE_OK; i++) result = abbe_tracer_pass(tracer, NULL, error);
   if (result == ABBE_OK) result = abbe_tracer_picture(tracer, &picture, error);
@@ -62,9 +56,6 @@ static abbe_result trace(abbe_error *error) {
   if (result == ABBE_OK) digest_image(&picture);
   if (result == ABBE_OK) digest_image(&map);
   if (result == ABBE_OK) digest_image(&filtered);
-  abbe_image_free(&filtered);
-  abbe_image_free(&map);
-  abbe_image_free(&picture);
   abbe_tracer_free(tracer);
   return result;
 }
@@ -72,11 +63,9 @@ static abbe_result trace(abbe_error *error) {
 static abbe_result reference(abbe_error *error) {
   const abbe_reference_desc desc = {
       .trace = tiny, .passes = 2, .checkpoint = operation_path("reference.checkpoint")};
-  abbe_image picture = {0}, map = {0};
+  OWNED(abbe_image, picture) = {0}, map = {0};
   const abbe_result result = abbe_reference_trace(&shared, &desc, &picture, &map, error);
   if (result == ABBE_OK) digest_image(&picture);
-  abbe_image_free(&map);
-  abbe_image_free(&picture);
   return result;
 }
 
@@ -103,8 +92,8 @@ static abbe_result make_picture(int which, abbe_image *out, abbe_error *error) {
 static abbe_result compare(abbe_error *error) {
   abbe_image image[2] = {{0}, {0}};
   abbe_field field[2] = {{0}, {0}};
-  abbe_mask mask = {0};
-  abbe_comparison comparison = {0};
+  OWNED(abbe_mask, mask) = {0};
+  OWNED(abbe_comparison, comparison) = {0};
   abbe_result result = ABBE_OK;
   for (int i = 0; i < 2 && result == ABBE_OK; i++) {
     result = make_picture(i, &image[i], error);
@@ -119,8 +108,6 @@ static abbe_result compare(abbe_error *error) {
   if (result == ABBE_OK)
     result = abbe_difference_picture_write(operation_path("difference.png"), &field[0], &field[1],
                                            1, 1, "it", error);
-  abbe_comparison_free(&comparison);
-  abbe_mask_free(&mask);
   for (int i = 0; i < 2; i++) {
     abbe_field_free(&field[i]);
     abbe_image_free(&image[i]);
@@ -130,7 +117,7 @@ static abbe_result compare(abbe_error *error) {
 
 static abbe_result outlines(abbe_error *error) {
   static double rgb[64][3];
-  abbe_outline a = {0}, b = {0};
+  OWNED(abbe_outline, a) = {0}, b = {0};
   abbe_outline_agreement agreement;
   for (size_t i = 0; i < 64; i++)
     for (size_t c = 0; c < 3; c++) rgb[i][c] = (double)((i * (c + 3)) % 5);
@@ -138,14 +125,12 @@ static abbe_result outlines(abbe_error *error) {
   if (result == ABBE_OK) result = abbe_outline_make((const double(*)[3])rgb, 8, 8, NULL, &b, error);
   if (result == ABBE_OK) result = abbe_outline_compare(&a, &b, &agreement, error);
   if (result == ABBE_OK) digest(&agreement.overlap, sizeof agreement.overlap);
-  abbe_outline_free(&b);
-  abbe_outline_free(&a);
   return result;
 }
 
 static abbe_result pov(abbe_error *error) {
   const char *path = operation_path("scene.pov");
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size = 0;
   abbe_scene plain = shared; /* a scene for POV-Ray has no textures */
   abbe_object objects[3];
@@ -155,18 +140,16 @@ static abbe_result pov(abbe_error *error) {
   abbe_result result = abbe_pov_file_write(path, &plain, NULL, error);
   if (result == ABBE_OK) result = abbe_file_read(path, 1 << 20, &text, &size, error);
   if (result == ABBE_OK) digest(text, size);
-  free(text);
   return result;
 }
 
 static abbe_result known(abbe_error *error) {
   const abbe_known_options options = {.only = "slab", .threads = 1};
-  abbe_known_answers answers = {0};
+  OWNED(abbe_known_answers, answers) = {0};
   abbe_result result = abbe_known_answers_make(&options, &answers, error);
   if (result == ABBE_OK) digest(&answers.count, sizeof answers.count);
   if (result == ABBE_OK)
     result = abbe_known_chart_write(operation_path("known.svg"), &answers, error);
-  abbe_known_answers_free(&answers);
   return result;
 }
 

@@ -123,12 +123,10 @@ typedef struct survey {
 } survey;
 
 static void visit_file(survey *s, const char *path) {
-  char full[1000], *text = NULL;
+  FREED char *text = NULL;
   size_t size = 0;
-  snprintf(full, sizeof full, ABBE_SOURCE_DIR "/%s", path);
-  OK(abbe_file_read(full, 1 << 22, &text, &size, &error));
+  OK(abbe_file_read(printed(ABBE_SOURCE_DIR "/%s", path), 1 << 22, &text, &size, &error));
   if (strcmp(path, the_place) != 0) s->found += read_text(path, text);
-  free(text);
   s->files++;
 }
 

@@ -39,25 +39,22 @@ static size_t judge(const sized *list, size_t count, size_t most, const char *un
 }
 
 TEST(sources_can_be_read) {
-  sources all;
   static sized list[4096];
   size_t count = 0;
-  sources_read(&all);
+  FILLED(sources, all, sources_read(&all));
   for (size_t i = 0; i < all.count && count < 4096; i++)
     if (all.file[i].is_source) list[count++] = (sized){all.file[i].path, all.file[i].lines};
   assert_true(count > 500 && count < 4096);
   static const char *const no_exceptions[] = {NULL};
   const size_t wrong = judge(list, count, MOST_LINES, "lines", no_exceptions);
-  sources_free(&all);
   assert_int_equal(wrong, 0);
 }
 
 TEST(folders_can_be_seen) {
-  sources all;
   static char name[512][SOURCES_MAX_PATH];
   static sized list[512];
   size_t count = 0;
-  sources_read(&all);
+  FILLED(sources, all, sources_read(&all));
   for (size_t i = 0; i < all.count; i++) {
     char folder[SOURCES_MAX_PATH];
     size_t at = 0;
@@ -70,7 +67,6 @@ TEST(folders_can_be_seen) {
     }
     list[at].size++;
   }
-  sources_free(&all);
   assert_true(count > 50);
   assert_int_equal(judge(list, count, MOST_FILES, "files", data_folders), 0);
 }

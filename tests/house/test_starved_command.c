@@ -16,18 +16,16 @@ static const char *const commands[] = {
     "\"$abbe\" plan " FUZZ "corpus/scene/gem.yaml --json",
     "\"$abbe\" info " FUZZ "corpus/exr/map.exr --json",
     "\"$abbe\" compare " FUZZ "corpus/exr/map.exr " FUZZ "corpus/exr/map.exr",
-    "\"$abbe\" trace " FUZZ "corpus/scene/gem.yaml -q --size 2x2 --photons 16 --map 2 --spp 1 "
-    "--threads 1 -o t.exr",
+    "\"$abbe\" trace " FUZZ
+    "corpus/scene/gem.yaml -q --size 2x2 --photons 16 --map 2 --spp 1 --threads 1 -o t.exr",
 };
 
 static size_t allocations_of(const char *command) {
-  char line[2048];
   size_t files = 0, count = 0;
-  snprintf(line, sizeof line,
-           "LD_PRELOAD='" ABBE_PRELOAD "' ABBE_FAULT_COUNT=../abbe-starved.$$ %s >out || echo "
-           "failed; cat ../abbe-starved.$$; rm ../abbe-starved.$$",
-           command);
-  run_line(line);
+  run_line(printed("LD_PRELOAD='" ABBE_PRELOAD
+                   "' ABBE_FAULT_COUNT=../abbe-starved.$$ %s >out || echo "
+                   "failed; cat ../abbe-starved.$$; rm ../abbe-starved.$$",
+                   command));
   if (sscanf(run_output, "%zu %zu", &files, &count) != 2)
     fail_msg("%s: %s%s", command, run_output, run_errors);
   run_each(run_remove, NULL);
@@ -35,9 +33,7 @@ static size_t allocations_of(const char *command) {
 }
 
 static bool holds_at(const char *command, const char *how, size_t n) {
-  char line[2048];
-  snprintf(line, sizeof line, "LD_PRELOAD='" ABBE_PRELOAD "' ABBE_FAULT=%s:%zu %s", how, n,
-           command);
+  const char *line = printed("LD_PRELOAD='" ABBE_PRELOAD "' ABBE_FAULT=%s:%zu %s", how, n, command);
   const int code = run_line(line);
   bool right = code == 0 || (code == 1 && strstr(run_errors, "abbe") != NULL);
   if (!right) print_error("%s ends with %d: %s\n", line, code, run_errors);

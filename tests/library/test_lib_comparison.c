@@ -3,6 +3,8 @@
 
 #include "library/lib_comparison.h"
 
+HOLDS(abbe_lib_picture);
+
 enum { SIDE = 16 };
 
 static abbe_lib_picture *ramp(double factor) {
@@ -21,7 +23,8 @@ static double value_of(const abbe_lib_comparison *c, const char *metric) {
 }
 
 TEST(a_factor_is_found) {
-  abbe_lib_picture *a = ramp(1), *b = ramp(2);
+  abbe_lib_picture *a = ramp(1);
+  HELD(abbe_lib_picture, b) = ramp(2);
   abbe_lib_comparison *c = NULL;
   OK(abbe_lib_comparison_make(a, a, NULL, NULL, 0, &c, &error));
   assert_near(value_of(c, "relative_rmse"), 0, 0);
@@ -39,12 +42,12 @@ TEST(a_factor_is_found) {
   assert_near(value_of(c, "relative_rmse"), 0, 1e-6);
   abbe_lib_comparison_free(c);
   abbe_lib_picture_free(a);
-  abbe_lib_picture_free(b);
 }
 
 TEST(a_drawn_mask_is_kept) {
   static const char *const name[] = {"Y"};
-  abbe_lib_picture *a = ramp(1), *b = ramp(1), *mask = NULL;
+  abbe_lib_picture *a = ramp(1), *b = ramp(1);
+  HELD(abbe_lib_picture, mask) = NULL;
   abbe_lib_comparison *c = NULL;
   double value, noise, limit;
   abbe_lib_picture_pixels(b)[0] = 100;
@@ -64,12 +67,12 @@ TEST(a_drawn_mask_is_kept) {
   assert_null(c);
   abbe_lib_picture_free(a);
   abbe_lib_picture_free(b);
-  abbe_lib_picture_free(mask);
 }
 
 TEST(what_is_none_is_refused) {
   static const char *const name[] = {"R", "G", "B"};
-  abbe_lib_picture *a = ramp(1), *small = NULL;
+  abbe_lib_picture *a = ramp(1);
+  HELD(abbe_lib_picture, small) = NULL;
   abbe_lib_comparison *c = NULL;
   double value, noise, limit;
   OK(abbe_lib_picture_make(4, 4, 3, name, NULL, &small, &error));
@@ -85,7 +88,6 @@ TEST(what_is_none_is_refused) {
   assert_int_equal(abbe_lib_comparison_pixels(c, true), 0);
   abbe_lib_comparison_free(c);
   abbe_lib_picture_free(a);
-  abbe_lib_picture_free(small);
 }
 
 TEST(metrics_have_names) {

@@ -5,6 +5,8 @@
 
 #include <unistd.h>
 
+HOLDS(abbe_lib_picture);
+
 static const char *const names[] = {"B", "G", "R", "Z"}; /* a file sorts them */
 static const float pixels[2 * 3 * 4] = {0.25f, 0.5f, 0.75f, 1,    -1,    0,  1e-7f, 1e7f,
                                         1,     2,    3,     4,    0,     0,  0,     0,
@@ -38,19 +40,18 @@ static void assert_is_made(abbe_lib_picture *p) {
 GROUP(setup, teardown);
 
 TEST(pixels_are_copied) {
-  abbe_lib_picture *p = made();
+  HELD(abbe_lib_picture, p) = made();
   assert_is_made(p);
   assert_true(abbe_lib_picture_pixels(p) != pixels);
   abbe_lib_picture_free(p);
   OK(abbe_lib_picture_make(2, 2, 1, names, NULL, &p, &error));
   for (int i = 0; i < 4; i++) assert_near(abbe_lib_picture_pixels(p)[i], 0, 0);
-  abbe_lib_picture_free(p);
 }
 
 TEST(a_file_keeps_every_bit) {
-  char path[64];
-  abbe_lib_picture *p = made(), *q = NULL;
-  snprintf(path, sizeof path, "%s/a.exr", folder);
+  HELD(abbe_lib_picture, p) = made();
+  HELD(abbe_lib_picture, q) = NULL;
+  const char *path = printed("%s/a.exr", folder);
   OK(abbe_lib_picture_set_attribute(p, "abbe:space", "rec709", &error));
   OK(abbe_lib_picture_set_attribute(p, "who", "me", &error));
   OK(abbe_lib_picture_save(p, path, &error));
@@ -62,20 +63,18 @@ TEST(a_file_keeps_every_bit) {
   size_t count = 0;
   while (abbe_lib_picture_attribute_name(q, count) != NULL) count++;
   assert_true(count >= 2);
-  abbe_lib_picture_free(p);
-  abbe_lib_picture_free(q);
   assert_int_equal(unlink(path), 0);
 }
 
 /* White is white and black is black in every display's view; one stop brightens. */
 TEST(a_png_is_for_a_screen) {
-  char path[64];
   abbe_error error = {0};
-  abbe_lib_picture *p = NULL, *q = NULL;
+  HELD(abbe_lib_picture, p) = NULL;
+  abbe_lib_picture *q = NULL;
   const float grey[] = {0, 0, 0, 0.1f, 0.1f, 0.1f};
   const char *const brighter[] = {"exposure=1", "bits=16"};
   float plain = 0;
-  snprintf(path, sizeof path, "%s/a.png", folder);
+  const char *path = printed("%s/a.png", folder);
   assert_int_equal(abbe_lib_picture_make(2, 1, 3, names, grey, &p, &error), ABBE_OK);
   for (size_t n = 0; n <= 2; n += 2) {
     assert_int_equal(abbe_lib_picture_save_png(p, path, brighter, n, &error), ABBE_OK);
@@ -92,7 +91,6 @@ TEST(a_png_is_for_a_screen) {
       ABBE_COLOUR);
   assert_int_equal(abbe_lib_picture_save_png(p, path, (const char *const[]){"bits=12"}, 1, &error),
                    ABBE_INVALID_ARGUMENT);
-  abbe_lib_picture_free(p);
   assert_int_equal(unlink(path), 0);
 }
 

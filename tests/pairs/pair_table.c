@@ -14,8 +14,7 @@ static void fail(const abbe_error *error) {
 static int trace(void) {
   abbe_error error = {0};
   puts("# Means of two regions of traced pictures, W/(m2 sr), and standard errors: of Y over Y, of "
-       "X / Y "
-       "and of Z / Y;\n# made by script/pairs --trace.\n"
+       "X / Y and of Z / Y;\n# made by script/pairs --trace.\n"
        "stone,company,region,X,Y,Z,error.Y,error.X/Y,error.Z/Y");
   for (size_t stone = 0; stone < PAIR_STONES; stone++)
     for (size_t company = 0; company < PAIR_COMPANIES; company++) {

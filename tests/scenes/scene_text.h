@@ -51,33 +51,28 @@
   "- {name: hill, shape: sphere, radius: 0.05, levels: 3, transform: [{translate: "                \
   "[0.5, 0.5, 0]}], reflectance: 0.5}\n"
 
-static inline void load_file(const char *path, abbe_scene *scene) {
-  abbe_error error = {0};
-  abbe_result result = abbe_scene_load(path, NULL, scene, &error);
-  if (result != ABBE_OK) print_error("%s\n", error.text);
-  assert_int_equal(result, ABBE_OK);
+static inline abbe_scene shipped_scene(const char *name) {
+  abbe_scene scene = {0};
+  OK(abbe_scene_load(printed(ABBE_SOURCE_DIR "/scenes/%s.yaml", name), NULL, &scene, &error));
+  return scene;
 }
 
-static inline void load_shipped(const char *name, abbe_scene *scene) {
-  char path[512];
-  snprintf(path, sizeof path, ABBE_SOURCE_DIR "/scenes/%s.yaml", name);
-  load_file(path, scene);
-}
-
-static inline void load_text(const char *text, abbe_scene *scene) {
-  char folder[] = "/tmp/abbe-test-scene-XXXXXX", table[64], path[64];
+static inline abbe_scene scene_of(const char *text) {
+  char folder[] = "/tmp/abbe-test-scene-XXXXXX";
   assert_non_null(mkdtemp(folder));
-  snprintf(table, sizeof table, "%s/glass.yaml", folder);
-  snprintf(path, sizeof path, "%s/scene.yaml", folder);
+  const char *table = printed("%s/glass.yaml", folder);
+  const char *path = printed("%s/scene.yaml", folder);
   OK(abbe_file_write(table, GLASSES, strlen(GLASSES), &error));
   OK(abbe_file_write(path, text, strlen(text), &error));
+  abbe_scene scene = {0};
   abbe_error why = {0};
-  abbe_result result = abbe_scene_load(path, NULL, scene, &why);
+  abbe_result result = abbe_scene_load(path, NULL, &scene, &why);
   unlink(table);
   unlink(path);
   rmdir(folder);
   if (result != ABBE_OK) print_error("%s\n", why.text);
   assert_int_equal(result, ABBE_OK);
+  return scene;
 }
 
 #endif

@@ -50,11 +50,10 @@ static void assert_same_object(const abbe_object *a, const abbe_object *b) {
 }
 
 TEST(a_moved_object_is_the_one_put_there) {
-  OWNED(abbe_scene, moved) = {0};
-  OWNED(abbe_scene, there) = {0};
   double matrix[16];
-  load_text(START BRICK_AT(FIRST) BALL_AT(FIRST) CARD_AT(FIRST), &moved);
-  load_text(START BRICK_AT(FIRST THEN) BALL_AT(FIRST THEN) CARD_AT(FIRST THEN), &there);
+  OWNED(abbe_scene, moved) = scene_of(START BRICK_AT(FIRST) BALL_AT(FIRST) CARD_AT(FIRST));
+  OWNED(abbe_scene, there) =
+      scene_of(START BRICK_AT(FIRST THEN) BALL_AT(FIRST THEN) CARD_AT(FIRST THEN));
   matrix_of_then(matrix);
   assert_int_equal(moved.object[1].exact.kind, ABBE_EXACT_CONVEX);
   assert_int_equal(moved.object[2].exact.kind, ABBE_EXACT_SPHERE);
@@ -66,8 +65,7 @@ TEST(a_moved_object_is_the_one_put_there) {
 }
 
 TEST(other_matrices_are_refused) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(START BRICK_AT(FIRST), &scene);
+  OWNED(abbe_scene, scene) = scene_of(START BRICK_AT(FIRST));
   abbe_object *brick = &scene.object[1];
   const double corner = brick->max[0];
   for (int k = 0; k < 6; k++) {
@@ -87,12 +85,13 @@ TEST(other_matrices_are_refused) {
 /* What refracts and what reflects turn about the middle of what refracts; the floor stays. */
 TEST(the_piece_turns) {
   static const double up[3] = {0, 0, 2};
-  abbe_scene turned = {0}, there = {0};
 #define METAL_AT(steps)                                                                            \
   "- {name: metal, shape: box, size: [0.02, 0.02, 0.02], mirror: 0.9, transform: [" steps "]}\n"
 #define TURNED "{rotate: {axis: [0, 0, 1], angle: 90}}, {translate: [0.2, 0.1, 0.2]}"
-  load_text(START BRICK_AT(FIRST) METAL_AT("{translate: [0.3, 0.1, 0.3]}"), &turned);
-  load_text(START BRICK_AT(TURNED) METAL_AT("{translate: [0.1, 0, 0.1]}, " TURNED), &there);
+  OWNED(abbe_scene, turned) =
+      scene_of(START BRICK_AT(FIRST) METAL_AT("{translate: [0.3, 0.1, 0.3]}"));
+  abbe_scene there =
+      scene_of(START BRICK_AT(TURNED) METAL_AT("{translate: [0.1, 0, 0.1]}, " TURNED));
   OK(abbe_piece_turn(&turned, up, 0.5 * 3.14159265358979323846, &error));
   assert_same_object(&turned.object[0], &there.object[0]);
   assert_same_object(&turned.object[1], &there.object[1]);
@@ -101,7 +100,6 @@ TEST(the_piece_turns) {
   REFUSED(ABBE_INVALID_ARGUMENT, "an axis", abbe_piece_turn(&turned, (double[3]){0}, 1, &error));
   abbe_scene_free(&turned);
   abbe_scene_free(&there);
-  load_text(START, &turned);
+  turned = scene_of(START);
   REFUSED(ABBE_INVALID_ARGUMENT, "nothing to turn", abbe_piece_turn(&turned, up, 1, &error));
-  abbe_scene_free(&turned);
 }

@@ -19,10 +19,9 @@
 #define OTHER "{translate: [0.3, 0.1, 0.4]}"
 
 TEST(all_refractors_turn_about_their_middle) {
-  OWNED(abbe_scene, tilted) = {0};
-  OWNED(abbe_scene, there) = {0};
-  load_text(START STONE_AT("a", ONE) PANE STONE_AT("b", OTHER), &tilted);
-  load_text(START STONE_AT("a", ONE TURNED) PANE STONE_AT("b", OTHER TURNED), &there);
+  OWNED(abbe_scene, tilted) = scene_of(START STONE_AT("a", ONE) PANE STONE_AT("b", OTHER));
+  OWNED(abbe_scene, there) =
+      scene_of(START STONE_AT("a", ONE TURNED) PANE STONE_AT("b", OTHER TURNED));
   OK(abbe_refractors_tilt(&tilted, 25 * RAD, 30 * RAD, &error));
   for (size_t i = 0; i < tilted.object_count; i++) {
     const abbe_object *a = &tilted.object[i], *b = &there.object[i];
@@ -35,8 +34,7 @@ TEST(all_refractors_turn_about_their_middle) {
 
 /* As abbe gem report has it: what is left of the axis' arrow rises. */
 TEST(a_tilt_lifts_what_is_left_of_its_axis) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(START STONE_AT("a", "{translate: [0, 0, 0.2]}"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(START STONE_AT("a", "{translate: [0, 0, 0.2]}"));
   abbe_object *o = &scene.object[1];
   size_t left = 0;
   for (size_t v = 0; v < o->mesh.vertex_count; v++)
@@ -47,8 +45,7 @@ TEST(a_tilt_lifts_what_is_left_of_its_axis) {
 }
 
 static void refused(const char *text, double tilt, abbe_result why, const char *part) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   REFUSED(why, part, abbe_refractors_tilt(&scene, tilt, 0, &error));
 }
 

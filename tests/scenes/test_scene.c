@@ -173,12 +173,10 @@ TEST(no_part_of_a_disk_is_in_glass) {
     abbe_light light = {.name = "lamp", .kind = ABBE_LIGHT_DISK, .radius = disks[i].radius};
     memcpy(light.position, disks[i].position, sizeof light.position);
     memcpy(light.direction, disks[i].direction, sizeof light.direction);
-    const abbe_scene scene = {
-        .camera = {.eye = {0, 0, 20}, .up = {0, 1, 0}, .fov_y_rad = 1, .width = 64, .height = 64},
-        .light_count = 1,
-        .light = &light,
-        .object_count = 2,
-        .object = object};
+    const abbe_scene scene =
+        FIELDS(.camera =
+                   {.eye = {0, 0, 20}, .up = {0, 1, 0}, .fov_y_rad = 1, .width = 64, .height = 64},
+               .light_count = 1, .light = &light, .object_count = 2, .object = object);
     for (int ball = 0; ball < 2; ball++) {
       abbe_error why = {0};
       object[1].exact.kind = ball ? ABBE_EXACT_SPHERE : ABBE_EXACT_NONE;

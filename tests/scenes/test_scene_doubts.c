@@ -6,8 +6,7 @@
 #define STONE(more) "- {name: stone, shape: brilliant, diameter: 0.05, " more ", material: dense}\n"
 
 static size_t doubts_of(const char *text, abbe_scene_doubts *out) {
-  OWNED(abbe_scene, scene);
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   abbe_scene_doubt(&scene, out);
   return out->count;
 }
@@ -58,9 +57,8 @@ TEST(no_shipped_scene_is_doubted) {
       "octahedra",    "metal-ring", "metal-ball",  "spoon",          "water/pool", "water/seabed",
       "water/shafts", "mist/prism", "glass-studio"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-    abbe_scene scene;
     abbe_scene_doubts doubts;
-    load_shipped(names[i], &scene);
+    abbe_scene scene = shipped_scene(names[i]);
     abbe_scene_doubt(&scene, &doubts);
     abbe_scene_free(&scene);
     if (doubts.count > 0) fail_msg("%s: %s", names[i], doubts.text[0]);

@@ -148,10 +148,8 @@ static inline void random_catalogue(abbe_material_catalogue *c) {
 }
 
 static inline abbe_material random_material(size_t number) {
-  char name[32];
   abbe_material m = {.dispersion = random_dispersion(), .min_nm = 350, .max_nm = 900};
-  snprintf(name, sizeof name, "glass-%zu", number);
-  m.name = strdup(name);
+  m.name = strdup(printed("glass-%zu", number));
   m.source = random_text(60);
   m.temperature_c = rand() % 2 ? NAN : round(random_in(-50, 100));
   if (rand() % 2) m.description = random_text(40);

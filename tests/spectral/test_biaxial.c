@@ -1,69 +1,25 @@
 /* Known answers of crystals of three indices, laws that hold at any face, and what other functions
  * say of two indices and of one. */
-#include "tests/check.h"
+#include "tests/spectral/crystal_faces.h"
 
-#include "base/maths.h"
 #include "spectral/biaxial.h"
 #include "spectral/uniaxial.h"
 
-static const double up[3] = {0, 0, 1};
 static const abbe_biaxial_mode F = ABBE_BIAXIAL_FAST, S = ABBE_BIAXIAL_SLOW;
 
-#define STRAIGHT                                                                                   \
-  {                                                                                                \
-    {1, 0, 0}, {0, 1, 0}, {                                                                        \
-      0, 0, 1                                                                                      \
-    }                                                                                              \
-  }
+#define STRAIGHT FIELDS({1, 0, 0}, {0, 1, 0}, {0, 0, 1})
 static const abbe_biaxial air = {{1, 1, 1}, STRAIGHT};
 static const abbe_biaxial sphene = {{1.900, 1.907, 2.034}, STRAIGHT};
 
-static double radians(double degree) {
-  return degree * ABBE_PI / 180;
-}
-static double degrees(double radian) {
-  return radian * 180 / ABBE_PI;
-}
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-static double next(void) {
-  static uint64_t state = 88172645463325252ull;
-  state ^= state << 13;
-  state ^= state >> 7;
-  state ^= state << 17;
-  return (double)(state >> 11) * 0x1p-53;
-}
-static void direction(double out[3]) {
-  double square;
-  do {
-    for (int k = 0; k < 3; k++) out[k] = 2 * next() - 1;
-    square = dot(out, out);
-  } while (!(square > 0.01 && square < 1));
-  for (int k = 0; k < 3; k++) out[k] /= sqrt(square);
-}
-static void cross(const double a[3], const double b[3], double out[3]) {
-  for (int k = 0; k < 3; k++)
-    out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-static void unit(double v[3]) {
-  const double length = sqrt(dot(v, v));
-  for (int k = 0; k < 3; k++) v[k] /= length;
-}
-static void down(double degree, double out[3]) {
-  out[0] = sin(radians(degree));
-  out[1] = 0;
-  out[2] = -cos(radians(degree));
-}
 /* Axes turned any way. */
 static abbe_biaxial turned(double a, double b, double c) {
   abbe_biaxial m = {{a, b, c}, STRAIGHT};
   double v[3];
   direction(m.axis[0]);
   direction(v);
-  cross(m.axis[0], v, m.axis[1]);
-  unit(m.axis[1]);
-  cross(m.axis[0], m.axis[1], m.axis[2]);
+  abbe_vector_cross(m.axis[0], v, m.axis[1]);
+  abbe_vector_normalise(m.axis[1]);
+  abbe_vector_cross(m.axis[0], m.axis[1], m.axis[2]);
   return m;
 }
 static double total(const abbe_biaxial_split *s) {
@@ -72,7 +28,7 @@ static double total(const abbe_biaxial_split *s) {
 }
 static double walk_off(const abbe_biaxial_state *s) {
   double sine[3];
-  cross(s->normal, s->ray, sine);
+  abbe_vector_cross(s->normal, s->ray, sine);
   return asin(fmin(sqrt(dot(sine, sine)), 1));
 }
 
@@ -221,10 +177,10 @@ TEST(air_to_calcite) {
     double r[2][2], v[3] = {0.3, -0.5, 0.7};
     abbe_biaxial m = {{1.65834, 1.65834, 1.48613}, STRAIGHT};
     memcpy(m.axis[2], rows[i].axis, sizeof v);
-    unit(m.axis[2]);
-    cross(v, m.axis[2], m.axis[0]);
-    unit(m.axis[0]);
-    cross(m.axis[2], m.axis[0], m.axis[1]);
+    abbe_vector_normalise(m.axis[2]);
+    abbe_vector_cross(v, m.axis[2], m.axis[0]);
+    abbe_vector_normalise(m.axis[0]);
+    abbe_vector_cross(m.axis[2], m.axis[0], m.axis[1]);
     reflect(&m, rows[i].degree, r);
     assert_near(r[0][0], rows[i].ss, 1e-7);
     assert_near(r[0][1], rows[i].sp, 1e-7);
@@ -346,7 +302,7 @@ TEST(along_an_optic_axis_energy_closes) {
         memcpy(m.axis, axes, sizeof axes);
         const double in[3] = {-sin(to), off, -cos(to)};
         double ray[3] = {in[0], in[1], in[2]};
-        unit(ray);
+        abbe_vector_normalise(ray);
         abbe_biaxial_split out;
         for (int mode = 0; mode < 2; mode++) {
           abbe_biaxial_meet(&air, &m, up, (abbe_biaxial_mode)mode, ray, NULL, &out);

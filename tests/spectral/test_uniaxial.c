@@ -1,45 +1,13 @@
-#include "tests/check.h"
+#include "tests/spectral/crystal_faces.h"
 
-#include "base/maths.h"
 #include "spectral/optics.h"
 #include "spectral/uniaxial.h"
 
 /* Calcite at 589.3 nm [Ghosh1999]. */
 static const double n_o = 1.65835, n_e = 1.48640;
-static const double up[3] = {0, 0, 1};
 static const abbe_uniaxial air = {1, 1, {0, 0, 1}};
 static const abbe_uniaxial_mode O = ABBE_UNIAXIAL_ORDINARY, E = ABBE_UNIAXIAL_EXTRAORDINARY;
 
-static double radians(double degree) {
-  return degree * ABBE_PI / 180;
-}
-static double degrees(double radian) {
-  return radian * 180 / ABBE_PI;
-}
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-static double next(void) {
-  static uint64_t state = 88172645463325252ull;
-  state ^= state << 13;
-  state ^= state >> 7;
-  state ^= state << 17;
-  return (double)(state >> 11) * 0x1p-53;
-}
-static void direction(double out[3]) {
-  double square;
-  do {
-    for (int k = 0; k < 3; k++) out[k] = 2 * next() - 1;
-    square = dot(out, out);
-  } while (!(square > 0.01 && square < 1));
-  for (int k = 0; k < 3; k++) out[k] /= sqrt(square);
-}
-/* Downwards, at an angle to the face's normal in the plane of x and z. */
-static void down(double degree, double out[3]) {
-  out[0] = sin(radians(degree));
-  out[1] = 0;
-  out[2] = -cos(radians(degree));
-}
 static abbe_uniaxial calcite(double x, double y, double z) {
   const double length = sqrt(x * x + y * y + z * z);
   return (abbe_uniaxial){n_o, n_e, {x / length, y / length, z / length}};

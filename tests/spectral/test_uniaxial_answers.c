@@ -1,38 +1,15 @@
 /* Known answers of uniaxial crystals: closed forms, and numbers of the full boundary conditions
  * from another hand. */
-#include "tests/check.h"
+#include "tests/spectral/crystal_faces.h"
 
 #include "base/maths.h"
 #include "spectral/uniaxial.h"
 
 #include <complex.h>
 
-static const double up[3] = {0, 0, 1};
 static const abbe_uniaxial air = {1, 1, {0, 0, 1}};
 static const abbe_uniaxial_mode O = ABBE_UNIAXIAL_ORDINARY, E = ABBE_UNIAXIAL_EXTRAORDINARY;
 
-static double radians(double degree) {
-  return degree * ABBE_PI / 180;
-}
-static double degrees(double radian) {
-  return radian * 180 / ABBE_PI;
-}
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-static double next(void) {
-  static uint64_t state = 88172645463325252ull;
-  state ^= state << 13;
-  state ^= state >> 7;
-  state ^= state << 17;
-  return (double)(state >> 11) * 0x1p-53;
-}
-/* Downwards, at an angle to the face's normal in the plane of x and z. */
-static void down(double degree, double out[3]) {
-  out[0] = sin(radians(degree));
-  out[1] = 0;
-  out[2] = -cos(radians(degree));
-}
 static double total(const abbe_uniaxial_split *s) {
   return s->reflected[0].share + s->reflected[1].share + s->transmitted[0].share +
          s->transmitted[1].share;

@@ -3,8 +3,7 @@
 #include "spectral/wavelengths.h"
 
 TEST(seven_over_the_default_range) {
-  OWNED(abbe_wavelengths, w);
-  OK(abbe_wavelengths_make(7, 380, 780, &w, &error));
+  MADE(abbe_wavelengths, w, abbe_wavelengths_make(7, 380, 780, &w, &error));
   assert_int_equal(w.count, 7);
   assert_near(w.lambda_nm[0], 380, 0);
   assert_near(w.lambda_nm[1], 380 + 400.0 / 6, 1e-12);
@@ -20,8 +19,7 @@ TEST(seven_over_the_default_range) {
 }
 
 TEST(one_stands_in_the_middle) {
-  OWNED(abbe_wavelengths, w);
-  OK(abbe_wavelengths_make(1, 400, 700, &w, &error));
+  MADE(abbe_wavelengths, w, abbe_wavelengths_make(1, 400, 700, &w, &error));
   assert_near(w.lambda_nm[0], 550, 0);
   assert_near(w.edge_nm[0], 400, 0);
   assert_near(w.edge_nm[1], 700, 0);
@@ -29,8 +27,7 @@ TEST(one_stands_in_the_middle) {
 
 TEST(bands_tile_the_range_at_any_count) {
   for (size_t count = 2; count <= ABBE_WAVELENGTHS_MAX_COUNT; count = count * 3 / 2 + 1) {
-    OWNED(abbe_wavelengths, w);
-    OK(abbe_wavelengths_make(count, 361.3, 829.7, &w, &error));
+    MADE(abbe_wavelengths, w, abbe_wavelengths_make(count, 361.3, 829.7, &w, &error));
     assert_near(w.edge_nm[0], 361.3, 0);
     assert_near(w.edge_nm[count], 829.7, 0);
     for (size_t i = 0; i < count; i++) {

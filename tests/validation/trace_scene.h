@@ -6,6 +6,8 @@
 
 #include "validation/tracer/tracer.h"
 
+HOLDS(abbe_tracer);
+
 /* Two small balls: they fill few of the cells that a light is aimed by, so that a tracer is made
  * in a moment. */
 #define BEADS(material)                                                                            \
@@ -16,10 +18,7 @@
 
 static inline abbe_tracer *make_tracer(const abbe_scene *scene, const abbe_trace_desc *desc) {
   abbe_tracer *tracer = NULL;
-  abbe_error error = {0};
-  abbe_result result = abbe_tracer_make(scene, desc, &tracer, &error);
-  if (result != ABBE_OK) print_error("%s\n", error.text);
-  assert_int_equal(result, ABBE_OK);
+  OK(abbe_tracer_make(scene, desc, &tracer, &error));
   return tracer;
 }
 

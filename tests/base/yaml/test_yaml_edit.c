@@ -155,16 +155,15 @@ TEST(an_item_is_put_at_the_end) {
 }
 
 TEST(an_item_is_told_as_it_stands) {
-  abbe_yaml_edit e = edit_of("l:\n  - a: 1 # one\n    b:\n      - 2\n    # end\n  - {a: 3}\n");
+  OWNED(abbe_yaml_edit, e) =
+      edit_of("l:\n  - a: 1 # one\n    b:\n      - 2\n    # end\n  - {a: 3}\n");
   abbe_yaml_node list = abbe_yaml_value(e.yaml, abbe_yaml_root(e.yaml), 0);
-  char *text = NULL;
+  FREED char *text = NULL;
   OK(abbe_yaml_edit_item(&e, list, 0, &text, &error));
   assert_string_equal(text, "a: 1 # one\nb:\n  - 2\n# end");
   free(text);
   OK(abbe_yaml_edit_item(&e, list, 1, &text, &error));
   assert_string_equal(text, "{a: 3}");
-  free(text);
-  abbe_yaml_edit_free(&e);
 }
 
 static void refused(const char *text, const char *path, const char *value, const char *part) {

@@ -20,11 +20,10 @@ TEST(texts_read_back) {
   for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
     for (int flow = 0; flow < 2; flow++) {
       FREED char *quote = quoted(texts[i]);
-      char text[200];
       abbe_yaml *yaml = NULL;
       abbe_error error = {0};
       assert_null(strchr(quote, '\n'));
-      snprintf(text, sizeof text, flow ? "{k: %s, l: 1}" : "k: %s\nl: 1\n", quote);
+      const char *text = printed(flow ? "{k: %s, l: 1}" : "k: %s\nl: 1\n", quote);
       if (abbe_yaml_parse(text, strlen(text), "t", &yaml, &error) != ABBE_OK)
         fail_msg("%s: %s", text, error.text);
       abbe_yaml_node root = abbe_yaml_root(yaml);

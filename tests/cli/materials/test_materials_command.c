@@ -72,12 +72,12 @@ TEST(extrapolation_is_reported_or_refused) {
   cJSON_Delete(json);
   assert_int_equal(run("materials show n-bk7 --at 500 --at 2600 --json"), 1);
   assert_string_equal(output,
-                      "abbe materials show: n-bk7 has no index at 2600 nm: its data reach from "
-                      "300 to 2500 nm, and its record does not say 'extrapolate: true'\n");
+                      "abbe materials show: n-bk7 has no index at 2600 nm: its data reach from 300 "
+                      "to 2500 nm, and its record does not say 'extrapolate: true'\n");
 }
 
 TEST(numbers_outside_the_data_are_not_told) {
-  char path[] = "/tmp/abbe-test-materials-XXXXXX", command[256];
+  char path[] = "/tmp/abbe-test-materials-XXXXXX";
   int fd = mkstemp(path);
   assert_true(fd >= 0);
   close(fd);
@@ -85,25 +85,22 @@ TEST(numbers_outside_the_data_are_not_told) {
                      "  coefficients: [1.5, 0.004]\n  range_nm: [600, 1000]\n  source: s\n"
                      "- name: flat\n  model: constant\n  coefficients: [1.5]\n  source: s\n";
   OK(abbe_file_write(path, text, strlen(text), &error));
-  snprintf(command, sizeof command, "materials show 'infrared glass' --table %s --json", path);
-  assert_int_equal(run(command), 0);
+  assert_int_equal(run(printed("materials show 'infrared glass' --table %s --json", path)), 0);
   cJSON *json = cJSON_Parse(output);
   assert_true(cJSON_IsNull(cJSON_GetObjectItem(json, "n_d")));
   assert_true(cJSON_IsNull(cJSON_GetObjectItem(json, "v_d")));
   assert_true(cJSON_IsNull(cJSON_GetObjectItem(json, "temperature_c")));
   assert_near(number(json, "n_C"), 1.5 + 0.004e6 / (656.2725 * 656.2725), 1e-12);
   cJSON_Delete(json);
-  snprintf(command, sizeof command, "materials show 'infrared glass' --table %s --fit", path);
-  assert_int_equal(run(command), 1);
+  assert_int_equal(run(printed("materials show 'infrared glass' --table %s --fit", path)), 1);
   assert_contains(output, "no index at 380 nm");
-  snprintf(command, sizeof command, "materials show flat --table %s", path);
-  assert_int_equal(run(command), 0);
+  assert_int_equal(run(printed("materials show flat --table %s", path)), 0);
   assert_contains(output, "V_d infinite");
   unlink(path);
 }
 
 TEST(a_density_is_set_shown_and_listed) {
-  char path[] = "/tmp/abbe-test-materials-XXXXXX", command[256];
+  char path[] = "/tmp/abbe-test-materials-XXXXXX";
   int fd = mkstemp(path);
   assert_true(fd >= 0);
   close(fd);
@@ -111,28 +108,22 @@ TEST(a_density_is_set_shown_and_listed) {
                      "  source: s\n- name: unknown\n  model: constant\n  coefficients: [1.6]\n"
                      "  source: s\n";
   OK(abbe_file_write(path, text, strlen(text), &error));
-  snprintf(command, sizeof command, "materials set heavy density_g_cm3=4.73 --table %s", path);
-  assert_int_equal(run(command), 0);
-  snprintf(command, sizeof command, "materials show heavy --table %s", path);
-  assert_int_equal(run(command), 0);
+  assert_int_equal(run(printed("materials set heavy density_g_cm3=4.73 --table %s", path)), 0);
+  assert_int_equal(run(printed("materials show heavy --table %s", path)), 0);
   assert_contains(output, "  density       4.73 g/cm3\n");
-  snprintf(command, sizeof command, "materials show heavy --table %s --json", path);
-  assert_int_equal(run(command), 0);
+  assert_int_equal(run(printed("materials show heavy --table %s --json", path)), 0);
   cJSON *json = cJSON_Parse(output);
   assert_near(number(json, "density_g_cm3"), 4.73, 0);
   cJSON_Delete(json);
-  snprintf(command, sizeof command, "materials list --table %s --json", path);
-  assert_int_equal(run(command), 0);
+  assert_int_equal(run(printed("materials list --table %s --json", path)), 0);
   json = cJSON_Parse(output);
   const cJSON *list = cJSON_GetObjectItem(json, "materials");
   assert_near(number(cJSON_GetArrayItem(list, 0), "density_g_cm3"), 4.73, 0);
   assert_true(cJSON_IsNull(cJSON_GetObjectItem(cJSON_GetArrayItem(list, 1), "density_g_cm3")));
   cJSON_Delete(json);
-  snprintf(command, sizeof command, "materials list --table %s --columns name,density", path);
-  assert_int_equal(run(command), 0);
+  assert_int_equal(run(printed("materials list --table %s --columns name,density", path)), 0);
   assert_contains(output, "heavy     4.73\n");
-  snprintf(command, sizeof command, "materials set heavy density_g_cm3=4730 --table %s", path);
-  assert_int_equal(run(command), 1);
+  assert_int_equal(run(printed("materials set heavy density_g_cm3=4730 --table %s", path)), 1);
   assert_contains(output, "density_g_cm3");
   unlink(path);
 }
@@ -140,7 +131,8 @@ TEST(a_density_is_set_shown_and_listed) {
 /* What --fit prints is what the shipped record holds. */
 TEST(a_printed_fit_is_the_recorded_one) {
   assert_int_equal(run("materials show diamond --fit"), 0);
-  char *table = NULL, *line = NULL;
+  FREED char *table = NULL;
+  char *line = NULL;
   size_t size = 0;
   OK(abbe_file_read(ABBE_SOURCE_DIR "/spectral/materials/materials.yaml", 1 << 20, &table, &size,
                     &error));
@@ -148,7 +140,6 @@ TEST(a_printed_fit_is_the_recorded_one) {
   for (line = strtok(output, "\n"); line != NULL; line = strtok(NULL, "\n"), lines++)
     assert_contains(table, line);
   assert_int_equal(lines, 3);
-  free(table);
 }
 
 TEST(wrong_use_is_2_and_says_what_is_right) {

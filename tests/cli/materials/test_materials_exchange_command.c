@@ -45,11 +45,10 @@ TEST(notes_are_numbers_for_a_program) {
 
 /* A folder in one command, into a store that every verb reads. */
 TEST(a_folder_becomes_a_store) {
-  runs("mkdir -p d/one/nk d/two/nk; for m in one two; do for f in Ann Zoe; do printf "
-       "'REFERENCES: r\\nCOMMENTS: 20 C\\nDATA:\\n- {type: formula 5, wavelength_range: 0.3 0.9, "
-       "coefficients: 1.5 0.004 -2}\\n' >d/$m/nk/$f.yml; done; done; cp "
-       "\"$house/docs/examples/maker.agf\" d; cp d/maker.agf d/two; echo DATA: >d/bad.yml; " M
-       "import d -o all.sqlite; rm -r d",
+  runs("mkdir -p d/one/nk d/two/nk; for m in one two; do for f in Ann Zoe; do printf 'REFERENCES: "
+       "r\\nCOMMENTS: 20 C\\nDATA:\\n- {type: formula 5, wavelength_range: 0.3 0.9, coefficients: "
+       "1.5 0.004 -2}\\n' >d/$m/nk/$f.yml; done; done; cp \"$house/docs/examples/maker.agf\" d; cp "
+       "d/maker.agf d/two; echo DATA: >d/bad.yml; " M "import d -o all.sqlite; rm -r d",
        "14 materials in all.sqlite");
   assert_contains(run_errors, "skipped: d/bad.yml");
   assert_contains(run_errors, "N-BK7: line 2: is named d-N-BK7, since several files have a "

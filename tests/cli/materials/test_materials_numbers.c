@@ -21,11 +21,10 @@ static const cJSON *first(const cJSON *json, const char *list) {
 
 /* What a verb prints as a record is read as one. */
 static abbe_material_table record_of(const char *line) {
-  char table_text[4096];
   abbe_material_table table;
   abbe_error error = {0};
   run_must(line);
-  snprintf(table_text, sizeof table_text, "materials:\n%.4000s", run_output);
+  const char *table_text = printed("materials:\n%.4000s", run_output);
   if (abbe_material_table_parse(table_text, strlen(table_text), "printed", &table, &error) !=
       ABBE_OK)
     fail_msg("%s\n%s", error.text, table_text);
@@ -46,10 +45,9 @@ TEST(lists_are_filtered_sorted_and_cut_into_columns) {
   answers("$abbe materials list --source peter1923 --columns name,p_gF,dp_gF", 0,
           "diamond  0.5629  +0.0121");
   answers("$abbe materials list --name nothing", 0, "none of");
-  cJSON *json = run_json("$abbe materials list --name diamond --json", 0);
+  HELD(cJSON, json) = run_json("$abbe materials list --name diamond --json", 0);
   assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "materials")), 1);
   assert_near(json_number(first(json, "materials"), "p_gF"), 0.5629, 5e-5);
-  cJSON_Delete(json);
 }
 
 TEST(show_tells_all_that_is_known) {
@@ -60,16 +58,14 @@ TEST(show_tells_all_that_is_known) {
   assert_contains(run_output, "0.6045\n"); /* 1/m at 400 nm */
   answers("$abbe materials show bak4 --table thesis", 0,
           "wrong         the column A holds n_d instead of Cauchy's A");
-  cJSON *json = run_json("$abbe materials show bak4 --table thesis --json", 0);
+  HELD(cJSON, json) = run_json("$abbe materials show bak4 --table thesis --json", 0);
   assert_string_equal(text(first(json, "findings"), "kind"), "a-is-n_d");
-  cJSON_Delete(json);
-  json = run_json("$abbe materials show n-bk7 --json", 0);
+  rerun_json(&json, "$abbe materials show n-bk7 --json", 0);
   assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "findings")), 0);
   assert_near(json_number(cJSON_GetObjectItem(json, "printed"), "n_d"), 1.5168, 0);
   assert_near(json_number(json, "n_e"), 1.51872, 5e-6);
   assert_near(json_number(first(json, "fits"), "residual_max"),
               json_number(first(json, "fits"), "max_error"), 1e-6);
-  cJSON_Delete(json);
 }
 
 /* ---- nearest ---- */
@@ -80,7 +76,7 @@ TEST(metals_are_told_by_n_and_k) {
   assert_null(strstr(run_output, "V_d"));
   assert_null(strstr(run_output, "nan"));
   assert_null(strstr(run_output, "Cauchy"));
-  cJSON *json = run_json("$abbe materials show gold --at 582.1 --json", 0);
+  HELD(cJSON, json) = run_json("$abbe materials show gold --at 582.1 --json", 0);
   const cJSON *nk = cJSON_GetObjectItem(json, "nk"), *colour;
   assert_int_equal(cJSON_GetArraySize(nk), 4);
   assert_near(json_number(cJSON_GetArrayItem(nk, 3), "reflectance"), 0.88236330895380525, 1e-12);
@@ -90,13 +86,11 @@ TEST(metals_are_told_by_n_and_k) {
   assert_true(cJSON_GetArrayItem(colour, 1)->valuedouble >
               1.8 * cJSON_GetArrayItem(colour, 2)->valuedouble);
   assert_null(cJSON_GetObjectItem(json, "v_d"));
-  cJSON_Delete(json);
   answers("$abbe materials list --name gold --columns name,n_d,v_d,model", 0,
           "gold    -    -  conductor");
-  answers(
-      "$abbe materials plot gold n-bk7 -o metal.svg && grep -c 'gold, k\\|svg' metal.svg >&2; rm "
-      "metal.svg",
-      0, "");
+  answers("$abbe materials plot gold n-bk7 -o metal.svg && grep -c 'gold, k\\|svg' metal.svg >&2; "
+          "rm metal.svg",
+          0, "");
   static const struct {
     const char *line, *part;
   } refused[] = {
@@ -111,22 +105,19 @@ TEST(metals_are_told_by_n_and_k) {
 }
 
 TEST(nearest_finds_by_numbers_curve_and_points) {
-  cJSON *json = run_json("$abbe materials nearest --nd 1.517 --vd 64.2 --count 2 --json", 0);
+  HELD(cJSON, json) = run_json("$abbe materials nearest --nd 1.517 --vd 64.2 --count 2 --json", 0);
   assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "nearest")), 2);
   assert_string_equal(text(first(json, "nearest"), "name"), "n-bk7");
-  cJSON_Delete(json);
-  json = run_json("$abbe materials nearest --like bk7 --like-table thesis --json", 0);
+  rerun_json(&json, "$abbe materials nearest --like bk7 --like-table thesis --json", 0);
   assert_string_equal(text(first(json, "nearest"), "name"), "n-bk7");
-  cJSON_Delete(json);
-  json = run_json("$abbe materials nearest --like sf11 --json", 0); /* not itself */
+  rerun_json(&json, "$abbe materials nearest --like sf11 --json", 0); /* not itself */
   assert_string_equal(text(first(json, "nearest"), "name"), "n-sf11");
-  cJSON_Delete(json);
-  json = run_json("printf '0.4861,1.6321\\n0.5876,1.62\\n0.6563,1.6150\\n' >p.csv\n"
-                  "$abbe materials nearest --points p.csv --json",
-                  0);
+  rerun_json(&json,
+             "printf '0.4861,1.6321\\n0.5876,1.62\\n0.6563,1.6150\\n' >p.csv\n"
+             "$abbe materials nearest --points p.csv --json",
+             0);
   assert_string_equal(text(first(json, "nearest"), "name"), "f2");
   assert_true(json_number(first(json, "nearest"), "rms") < 1e-4);
-  cJSON_Delete(json);
   answers("$abbe materials nearest --like n-bk7 --range 500:2000", 0, "were skipped");
 }
 
@@ -145,19 +136,17 @@ TEST(an_index_relative_to_vacuum_stays_so) {
     answers(line, 0, "index         relative to vacuum\n");
     assert_contains(run_output, "n_d 1.500000 relative to vacuum");
     strcat(line, " --at 550 --json");
-    cJSON *json = run_json(line, 0);
+    HELD(cJSON, json) = run_json(line, 0);
     assert_true(cJSON_IsTrue(cJSON_GetObjectItem(json, "n_absolute")));
     assert_near(json_number(first(json, "n"), "n"), 1.5, 1e-12);
     assert_near(json_number(first(json, "n"), "n_absolute"), 1.5, 1e-12);
-    cJSON_Delete(json);
   }
 }
 
 /* Beside two indices stand two losses, as the record gives them. */
 TEST(losses_stand_by_wave) {
-  cJSON *json = run_json("$abbe materials show tourmaline-green --at 550 --json", 0);
-  OWNED(abbe_material_table, table);
-  OK(abbe_material_table_load("default", &table, &error));
+  HELD(cJSON, json) = run_json("$abbe materials show tourmaline-green --at 550 --json", 0);
+  MADE(abbe_material_table, table, abbe_material_table_load("default", &table, &error));
   const abbe_material *m = NULL;
   OK(abbe_material_table_find(&table, "tourmaline-green", &m, &error));
   const double ordinary = abbe_material_attenuation_along(m, 0, 550),
@@ -166,17 +155,14 @@ TEST(losses_stand_by_wave) {
   assert_near(json_number(first(json, "n"), "attenuation_per_m"), ordinary, 1e-9 * ordinary);
   assert_near(json_number(first(json, "n"), "attenuation_extraordinary_per_m"), extraordinary,
               1e-9 * ordinary);
-  char line[96];
-  snprintf(line, sizeof line, "%14.4g%19.4g\n", ordinary, extraordinary);
-  answers("$abbe materials show tourmaline-green --at 550", 0, line);
+  answers("$abbe materials show tourmaline-green --at 550", 0,
+          printed("%14.4g%19.4g\n", ordinary, extraordinary));
   assert_contains(run_output, "ordinary 1/m  extraordinary 1/m\n");
-  cJSON_Delete(json);
 }
 
 TEST(partners_are_listed_and_drawn) {
-  cJSON *json = run_json("$abbe materials partners n-bk7 --json -o map.svg && grep -q svg map.svg "
-                         "&& rm map.svg",
-                         0);
+  HELD(cJSON, json) = run_json(
+      "$abbe materials partners n-bk7 --json -o map.svg && grep -q svg map.svg && rm map.svg", 0);
   const cJSON *best = first(json, "partners");
   assert_string_equal(text(best, "name"), "fluorite");
   const cJSON *powers = cJSON_GetObjectItem(best, "powers");
@@ -184,7 +170,6 @@ TEST(partners_are_listed_and_drawn) {
   assert_near(cJSON_GetArrayItem(powers, 0)->valuedouble +
                   cJSON_GetArrayItem(powers, 1)->valuedouble,
               1, 1e-12);
-  cJSON_Delete(json);
   answers("$abbe materials partners n-bk7 --with sf10 --count 2", 0, "f_d-f_F mm");
   answers("$abbe materials partners n-bk7 --most-power 3 --count 1", 0, "sf10");
 }
@@ -192,7 +177,7 @@ TEST(partners_are_listed_and_drawn) {
 /* ---- check ---- */
 
 TEST(check_finds_the_four_wrong_rows_of_the_thesis) {
-  cJSON *json = run_json("$abbe materials check --table thesis --json", 3);
+  HELD(cJSON, json) = run_json("$abbe materials check --table thesis --json", 3);
   assert_near(json_number(json, "wrong"), 4, 0);
   assert_near(json_number(json, "doubtful"), 0, 0);
   const cJSON *f;
@@ -200,7 +185,6 @@ TEST(check_finds_the_four_wrong_rows_of_the_thesis) {
     assert_string_equal(text(f, "kind"), "a-is-n_d");
     assert_string_not_equal(text(f, "name"), "bk7");
   }
-  cJSON_Delete(json);
   answers("$abbe materials check --table thesis", 3, "5 rows, 4 wrong, 0 doubtful, 0 to note");
   assert_contains(run_errors, "4 findings in 'thesis' want a look");
   answers("$abbe materials check bk7 --table thesis", 0, "5 rows, 0 wrong");
@@ -221,25 +205,23 @@ TEST(fix_changes_a_copy_and_leaves_the_rest) {
 
 /* What is only to know stands in one line of each kind, however many rows it is about. */
 TEST(notes_of_many_rows_are_one_line) {
-  answers(
-      "{ echo materials:; for i in $(seq 200); do echo \"- {name: g$i, model: cauchy, "
-      "coefficients: [1.$((1000 + 7 * i)), 0.004], range_nm: [400, 700], source: book}\"; done; "
-      "} >n.yaml; $abbe materials check --table n.yaml",
-      0,
-      "200 rows (g1, g2, g3, \xe2\x80\xa6): note, not-visible: the data do not cover 380 to 780 "
-      "nm; --all tells of each\n\nn.yaml: 200 rows, 0 wrong, 0 doubtful, 200 to note\n");
+  answers("{ echo materials:; for i in $(seq 200); do echo \"- {name: g$i, model: cauchy, "
+          "coefficients: [1.$((1000 + 7 * i)), 0.004], range_nm: [400, 700], source: book}\"; "
+          "done; } >n.yaml; $abbe materials check --table n.yaml",
+          0,
+          "200 rows (g1, g2, g3, \xe2\x80\xa6): note, not-visible: the data do not cover 380 to "
+          "780 nm; --all tells of each\n\nn.yaml: 200 rows, 0 wrong, 0 doubtful, 200 to note\n");
   assert_true(strlen(run_output) < 200);
   answers("$abbe materials check --table n.yaml --all", 0, "g200 (line 201): note, not-visible");
   answers("$abbe materials check g7 --table n.yaml", 0, "its data reach from 400 to 700 nm");
-  cJSON *json = run_json("$abbe materials check --table n.yaml --json; rm n.yaml", 0);
+  HELD(cJSON, json) = run_json("$abbe materials check --table n.yaml --json; rm n.yaml", 0);
   assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "findings")), 200);
-  cJSON_Delete(json);
 }
 
 TEST(unreadable_records_do_not_stop_a_check) {
   answers("printf 'materials:\\n- {name: a, model: cachy, source: s}\\n"
-          "- {name: b, model: cauchy, coefficients: [1.5046, 4200], range_nm: [380, 780], "
-          "source: book}\\n' >s.yaml; $abbe materials check --table s.yaml",
+          "- {name: b, model: cauchy, coefficients: [1.5046, 4200], range_nm: [380, 780], source: "
+          "book}\\n' >s.yaml; $abbe materials check --table s.yaml",
           3, "a (line 2): wrong, unread: the record cannot be read");
   assert_contains(run_output, "did you mean 'cauchy'?");
   assert_contains(run_output, "--fix: coefficients: [1.5046, 0.0042]");
@@ -252,23 +234,21 @@ TEST(fits_come_with_their_errors) {
   answers("$abbe materials fit n-bk7 --terms 3", 0, "largest error  0.000157 at 380 nm");
   assert_contains(run_output, "401 points from 380 to 780 nm");
   assert_contains(run_output, "covariance");
-  cJSON *json = run_json("$abbe materials fit n-sf11 --form sellmeier --range 400:700 --over "
-                         "380:780 --json",
-                         0);
+  HELD(cJSON, json) = run_json(
+      "$abbe materials fit n-sf11 --form sellmeier --range 400:700 --over 380:780 --json", 0);
   assert_string_equal(text(json, "model"), "sellmeier2");
   assert_true(json_number(json, "max_error") < 5e-5);
   assert_true(json_number(cJSON_GetObjectItem(json, "over"), "max_error") >
               json_number(json, "max_error"));
   assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "covariance")), 5);
   assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "residuals")), 301);
-  cJSON_Delete(json);
-  json = run_json("$abbe materials fit --formula 'sellmeier2 0 1.3, 0.01' --form sellmeier "
-                  "--terms 1 --json",
-                  0);
+  rerun_json(
+      &json,
+      "$abbe materials fit --formula 'sellmeier2 0 1.3, 0.01' --form sellmeier --terms 1 --json",
+      0);
   const cJSON *c = cJSON_GetObjectItem(json, "coefficients");
   assert_near(cJSON_GetArrayItem(c, 1)->valuedouble, 1.3, 1e-9);
   assert_near(cJSON_GetArrayItem(c, 2)->valuedouble, 0.01, 1e-9);
-  cJSON_Delete(json);
   answers("$abbe materials fit diamond --range 500:900", 0,
           "its data reach from 226 to 760 nm; the rest is continued");
 }
@@ -279,8 +259,8 @@ TEST(fits_come_with_their_errors) {
   "706.52,1.51289,2e-5\\n' >m.csv\n"
 
 TEST(measured_points_are_fitted_and_drawn) {
-  answers(POINTS "$abbe materials fit --points m.csv --terms 3 --residuals --plot m.png && "
-                 "head -c 4 m.png | tail -c 3",
+  answers(POINTS "$abbe materials fit --points m.csv --terms 3 --residuals --plot m.png && head -c "
+                 "4 m.png | tail -c 3",
           0, "in uncertainties");
   assert_contains(run_output, "from the uncertainties");
   assert_contains(run_output, "reduced chi^2");
@@ -288,7 +268,7 @@ TEST(measured_points_are_fitted_and_drawn) {
   answers(POINTS "$abbe materials fit --points m.csv --over 300:600", 0,
           "(at the 5 points there, 404.66 to 587.56 nm)");
   answers("$abbe materials fit --points m.csv --plot m.svg >/dev/null && cat m.svg", 0, "<svg");
-  abbe_material_table t =
+  OWNED(abbe_material_table, t) =
       record_of(POINTS "$abbe materials fit --points m.csv --terms 3 --record my-glass");
   assert_string_equal(t.material[0].name, "my-glass");
   assert_near(t.material[0].min_nm, 404.66, 0);
@@ -296,7 +276,6 @@ TEST(measured_points_are_fitted_and_drawn) {
   double n = 0;
   OK(abbe_material_n(&t.material[0], 587.56, &n, &error));
   assert_near(n, 1.51681, 1e-4);
-  abbe_material_table_free(&t);
 }
 
 /* ---- from ---- */
@@ -312,22 +291,18 @@ TEST(two_numbers_make_a_record) {
       {"--a 1.5046 --b 0.0042", 1.5046 + 0.0042 / 0.34522887, 64.43},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    char line[200];
-    snprintf(line, sizeof line, "$abbe materials from %s --name x --source 'a book'",
-             cases[i].arguments);
-    abbe_material_table t = record_of(line);
+    OWNED(abbe_material_table, t) = record_of(
+        printed("$abbe materials from %s --name x --source 'a book'", cases[i].arguments));
     abbe_dispersion_numbers d = abbe_dispersion_describe(&t.material[0].dispersion);
     assert_near(d.n_d, cases[i].n_d, 1e-7);
     assert_near(d.v_d, cases[i].v_d, 5e-3);
     assert_contains(t.material[0].warning, "known materials of like V_d errs by");
     assert_contains(t.material[0].source, "a book; ");
-    abbe_material_table_free(&t);
   }
-  cJSON *json = run_json("$abbe materials from --nd 2.417 --bg 0.044 --json", 0);
+  HELD(cJSON, json) = run_json("$abbe materials from --nd 2.417 --bg 0.044 --json", 0);
   assert_near(json_number(json, "b_g"), 0.044, 1e-9);
   assert_near(json_number(json, "rounding_error"), 1e-3, 5e-4);
   assert_true(json_number(json, "largest_error") > json_number(json, "typical_error"));
-  cJSON_Delete(json);
   /* what the check doubts is said, on the side */
   run_must("$abbe materials from --a 1.5690 --b 0.00531");
   assert_contains(run_errors, "the column A holds n_d");
@@ -345,8 +320,7 @@ TEST(wrong_input_gets_a_sentence) {
       {"$abbe materials list --columns name,vd", 2, "did you mean 'v_d'?"},
       {"$abbe materials list --columns ,", 2, "names no column"},
       {"$abbe materials list --nd 1.5", 2,
-       "--nd '1.5' is not a range: two numbers above 0, the "
-       "smaller first, such as 1.5:1.6"},
+       "--nd '1.5' is not a range: two numbers above 0, the smaller first, such as 1.5:1.6"},
       {"$abbe materials from --nd 1.5 --bg 5", 1, "1.5 and 5 go with no material"},
       {"$abbe materials partners", 2, "partners of what?"},
       {"$abbe materials partners gold", 1, "gold has no single index with a V_d and a P_gF"},
@@ -410,10 +384,8 @@ TEST(wrong_input_gets_a_sentence) {
 TEST(every_verb_helps_by_example) {
   const char *const verbs[] = {"list", "show", "nearest", "partners", "check", "fit", "from"};
   for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++) {
-    char line[100], part[100];
-    snprintf(line, sizeof line, "$abbe materials %s --help", verbs[i]);
-    snprintf(part, sizeof part, "Examples:\n  abbe materials %s", verbs[i]);
-    answers(line, 0, part);
+    const char *line = printed("$abbe materials %s --help", verbs[i]);
+    answers(line, 0, printed("Examples:\n  abbe materials %s", verbs[i]));
   }
   answers("$abbe materials --help", 0, verbs[0]);
   for (size_t i = 1; i < sizeof verbs / sizeof verbs[0]; i++) assert_contains(run_output, verbs[i]);

@@ -6,11 +6,9 @@
 #define PLOT "\"$abbe\" materials plot "
 
 static void check_picture(const char *name, size_t width, size_t height) {
-  abbe_image image;
-  OK(abbe_png_read(run_path(name), &image, &error));
+  MADE(abbe_image, image, abbe_png_read(run_path(name), &image, &error));
   assert_int_equal(image.width, width);
   assert_int_equal(image.height, height);
-  abbe_image_free(&image);
   unlink(run_path(name));
 }
 
@@ -25,8 +23,8 @@ TEST(pictures_are_made) {
            "n-bk7 --points p.csv -o a.png && rm p.csv");
   check_picture("a.png", 960, 600);
   run_must(PLOT "--map --table thesis --table default bk7 n-bk7 -o a.png");
-  assert_string_equal(run_errors, "abbe materials plot: left out 1 without n_d and a finite V_d in "
-                                  "their range\n");
+  assert_string_equal(
+      run_errors, "abbe materials plot: left out 1 without n_d and a finite V_d in their range\n");
   check_picture("a.png", 960, 600);
   run_must(PLOT "n-bk7 -o a.svg && head -c 5 a.svg && rm a.svg");
   assert_string_equal(run_output, "<?xml");

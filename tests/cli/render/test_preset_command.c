@@ -21,7 +21,7 @@ EACH(run_setup, run_teardown);
 
 TEST(by_name) {
   run_must(PRESETS);
-  cJSON *json = run_json(GEM "--presets p.yaml --preset balanced --json -q", 0);
+  HELD(cJSON, json) = run_json(GEM "--presets p.yaml --preset balanced --json -q", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "preset")), "balanced");
   assert_contains(cJSON_GetStringValue(item(json, "settings")), "24 photons, map 64");
   assert_near(cJSON_GetNumberValue(item(json, "error")), 4, 0);
@@ -45,19 +45,16 @@ TEST(by_name) {
   /* The shipped ones, and none at all. */
   json = run_json(GEM "--preset draft --json -q", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "class")), "convex");
-  cJSON_Delete(json);
-  json = run_json(GEM "--photons 16 --map 64 --json -q", 0);
+  rerun_json(&json, GEM "--photons 16 --map 64 --json -q", 0);
   assert_null(cJSON_GetObjectItemCaseSensitive(json, "promise"));
-  cJSON_Delete(json);
 }
 
 TEST(by_error_and_by_time) {
   run_must(PRESETS);
-  cJSON *json = run_json(GEM "--presets p.yaml --max-error 5 --json -q", 0);
+  HELD(cJSON, json) = run_json(GEM "--presets p.yaml --max-error 5 --json -q", 0);
   assert_near(cJSON_GetNumberValue(item(json, "error")), 4, 0);
   assert_true(cJSON_IsTrue(item(json, "possible")));
-  cJSON_Delete(json);
-  json = run_json(GEM "--presets p.yaml --max-error 1 --json --png a.png", 3);
+  rerun_json(&json, GEM "--presets p.yaml --max-error 1 --json --png a.png", 3);
   assert_near(cJSON_GetNumberValue(item(json, "error")), 2, 0);
   assert_true(cJSON_IsFalse(item(json, "possible")));
   assert_contains(run_errors, "no settings are known to keep 1; these are the most accurate");
@@ -70,16 +67,14 @@ TEST(by_error_and_by_time) {
   assert_near(cJSON_GetNumberValue(item(json, "error")), 4, 0);
   assert_true(cJSON_IsTrue(item(json, "possible")));
   assert_true(cJSON_IsTrue(item(json, "budget_met")));
-  cJSON_Delete(json);
-  json = run_json(GEM "--presets p.yaml --budget-ms 0.001 --json -q --png a.png", 3);
+  rerun_json(&json, GEM "--presets p.yaml --budget-ms 0.001 --json -q --png a.png", 3);
   assert_true(cJSON_IsFalse(item(json, "possible")));
   assert_true(cJSON_IsFalse(item(json, "budget_met")));
   assert_contains(run_errors,
                   "the budget of 0.001 ms is not kept, for no faster settings are known");
   run_must("test -s a.png && rm a.png");
-  cJSON_Delete(json);
-  assert_int_equal(run_line(GEM "--presets p.yaml --budget-ms 0.001 --png a.png && rm a.png"), 3);
-  assert_contains(run_errors, "these are the fastest");
+  run_fails(GEM "--presets p.yaml --budget-ms 0.001 --png a.png && rm a.png", 3,
+            "these are the fastest");
 }
 
 TEST(what_is_refused) {
@@ -124,7 +119,7 @@ TEST(what_a_budget_tells) {
       {GEM "--presets q.yaml --budget-ms 1e6 --json --tool render", "by traced passes"},
   };
   for (size_t i = 0; i < sizeof told / sizeof *told; i++) {
-    cJSON *json = run_json(told[i].line, 0);
+    HELD(cJSON, json) = run_json(told[i].line, 0);
     assert_true(cJSON_IsTrue(item(json, "checked")) && cJSON_IsTrue(item(json, "budget_met")));
     assert_contains(cJSON_GetStringValue(item(json, "error_met_is")), told[i].met);
     assert_contains(cJSON_GetStringValue(item(json, "error_is")), "told by");
@@ -133,23 +128,21 @@ TEST(what_a_budget_tells) {
                 cJSON_GetNumberValue(item(json, "error_met")));
     assert_contains(run_errors, "in the caustic is expected, by what was measured on gem");
     assert_contains(run_errors, "note: the error is about");
-    cJSON_Delete(json);
   }
-  cJSON *json = run_json(GEM "--presets q.yaml --budget-ms 1 --json --tool render", 3);
+  HELD(cJSON, json) = run_json(GEM "--presets q.yaml --budget-ms 1 --json --tool render", 3);
   assert_true(cJSON_IsFalse(item(json, "checked")) && cJSON_IsNull(item(json, "error_met")));
   assert_contains(cJSON_GetStringValue(item(json, "error_is")),
                   "expected (not checked: the budget left no time for it)");
   assert_contains(run_errors, "note: the error is 8, expected (not checked");
-  cJSON_Delete(json);
-  json = run_json(GEM "--presets q.yaml --preset draft --json --tool render", 0);
+  rerun_json(&json, GEM "--presets q.yaml --preset draft --json --tool render", 0);
   assert_contains(cJSON_GetStringValue(item(json, "error_is")), "no passes were traced for that");
-  cJSON_Delete(json);
   run_must("rm q.yaml f.yaml");
 }
 
 TEST(what_makes_the_picture) {
   run_must(PICTURES);
-  cJSON *json = run_json(GEM "--presets q.yaml --max-error 12 --tool trace --json -o a.exr", 0);
+  HELD(cJSON, json) =
+      run_json(GEM "--presets q.yaml --max-error 12 --tool trace --json -o a.exr", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "for")), "picture");
   assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "trace");
   assert_contains(cJSON_GetStringValue(item(json, "settings")), "4 passes of 4096 photons");
@@ -167,8 +160,7 @@ TEST(what_makes_the_picture) {
   assert_true(cJSON_GetNumberValue(item(json, "passes")) > 4);
   assert_true(cJSON_GetNumberValue(item(json, "error_at_most")) <= 6);
   assert_contains(run_errors, "; 4 were too few for what is asked");
-  cJSON_Delete(json);
-  json = run_json(GEM "--presets q.yaml --max-error 0.5 --tool trace --json", 3);
+  rerun_json(&json, GEM "--presets q.yaml --max-error 0.5 --tool trace --json", 3);
   assert_true(cJSON_IsFalse(item(json, "error_kept")));
   assert_contains(run_errors, "half against half; expected were");
   assert_contains(run_errors, "that is more, for this scene's light is of another kind");
@@ -185,8 +177,8 @@ TEST(what_makes_the_picture) {
   /* A file that promises too much of the renderer: its picture is found out, and the passes that do
    * so are taken instead, unless the renderer was asked for. */
   assert_int_equal(
-      run_line("sed 's/error: 8, least: 0.5/error: 0.1, least: 0.1/; s/ms: 2,/ms: 9,/' "
-               "q.yaml >r.yaml"),
+      run_line(
+          "sed 's/error: 8, least: 0.5/error: 0.1, least: 0.1/; s/ms: 2,/ms: 9,/' q.yaml >r.yaml"),
       0);
   json = run_json(GEM "--presets r.yaml --max-error 3 --json -o a.exr", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "render");
@@ -200,19 +192,15 @@ TEST(what_makes_the_picture) {
   assert_true(cJSON_IsFalse(item(json, "error_kept")));
   assert_contains(run_errors, "against which the picture is held; expected were 0.1");
   assert_contains(run_errors, "an error of 3 is not known to be kept");
-  cJSON_Delete(json);
-  json = run_json(GEM "--presets q.yaml --preset accurate --json --samples 1", 0);
+  rerun_json(&json, GEM "--presets q.yaml --preset accurate --json --samples 1", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "render");
   assert_contains(run_errors, "options of the renderer are given, so the tracer is not");
-  cJSON_Delete(json);
-  json = run_json(GEM "--presets q.yaml --budget-ms 1 --json -q", 3);
+  rerun_json(&json, GEM "--presets q.yaml --budget-ms 1 --json -q", 3);
   assert_true(cJSON_IsFalse(item(json, "budget_met")));
   assert_contains(run_errors, "the budget of 1 ms is not kept, for nothing faster is known");
-  cJSON_Delete(json);
-  json = run_json(GEM "--presets q.yaml --max-error 9 --for frame --json -q", 0);
+  rerun_json(&json, GEM "--presets q.yaml --max-error 9 --for frame --json -q", 0);
   assert_null(
       cJSON_GetObjectItemCaseSensitive(cJSON_GetObjectItemCaseSensitive(json, "promise"), "for"));
-  cJSON_Delete(json);
   run_must("rm q.yaml r.yaml");
   static const struct {
     const char *line, *part;
@@ -229,21 +217,19 @@ TEST(what_makes_the_picture) {
 
 /* Presets of a small sweep of its own, and a sweep that holds the shipped ones to their word. */
 TEST(presets_of_a_sweep) {
-  int code =
-      run_line("\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q --size 24x24 --frames 1 --spp 2 "
-               "--traced-photons 20000 --texels 16 --map 64 --samples 1 --wavelengths 3 "
-               "--photons 16,32 --profiles default -o s.csv && "
-               "\"$abbe\" sweep s.csv --write-presets p.yaml && cat p.yaml");
+  int code = run_line(
+      "\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q --size 24x24 --frames 1 --spp 2 "
+      "--traced-photons 20000 --texels 16 --map 64 --samples 1 --wavelengths 3 --photons 16,32 "
+      "--profiles default -o s.csv && \"$abbe\" sweep s.csv --write-presets p.yaml && cat p.yaml");
   if (code != 0) fail_msg("%s", run_errors);
   assert_contains(
       run_output,
       "- class: convex\n  scenes: gem\n  margin: 1\n  time_margin: 1\n  margin_scenes: 0\n");
-  cJSON *json = run_json(GEM "--presets p.yaml --preset draft --json -q", 0);
+  HELD(cJSON, json) = run_json(GEM "--presets p.yaml --preset draft --json -q", 0);
   assert_contains(cJSON_GetStringValue(item(json, "run")), "24x24; medians of 1 frames");
-  cJSON_Delete(json);
   /* None of its settings is finer than the defaults. */
-  assert_int_equal(run_line(GEM "--presets p.yaml --preset accurate --json"), 1);
-  assert_contains(run_errors, "there is no 'accurate' for scenes of the class convex in p.yaml");
+  run_fails(GEM "--presets p.yaml --preset accurate --json", 1,
+            "there is no 'accurate' for scenes of the class convex in p.yaml");
   assert_true(run_line("rm s.csv s-reference*.exr p.yaml") == 0);
   assert_true(run_refuses("\"$abbe\" sweep a.yaml -o s.csv --write-presets p.yaml", 2,
                           "--write-presets reads tables"));

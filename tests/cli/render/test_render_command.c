@@ -10,7 +10,7 @@
 #define GEM "\"$abbe\" render \"$house\"/scenes/gem.yaml" SMALL
 
 static void assert_statistics(const char *text) {
-  cJSON *json = cJSON_Parse(text);
+  HELD(cJSON, json) = cJSON_Parse(text);
   assert_non_null(json);
   assert_true(json_number(json, "frame_ms") > 0);
   assert_near(json_number(json, "wavelengths"), 7, 0);
@@ -31,7 +31,6 @@ static void assert_statistics(const char *text) {
   /* The balance that is promised, from the numbers as they are told. */
   assert_near(sum / reached, 1, 1e-4);
   assert_true(json_number(energy, "imbalance") < 1e-4);
-  cJSON_Delete(json);
 }
 
 GROUP(run_setup, run_teardown);
@@ -47,7 +46,7 @@ TEST(statistics_as_json) {
 }
 
 TEST(the_plan_as_json) {
-  cJSON *json = run_json("\"$abbe\" plan \"$house\"/scenes/gem.yaml --json", 0);
+  HELD(cJSON, json) = run_json("\"$abbe\" plan \"$house\"/scenes/gem.yaml --json", 0);
   const cJSON *plan = cJSON_GetObjectItemCaseSensitive(json, "plan"), *entry;
   assert_true(cJSON_GetArraySize(plan) > 10);
   cJSON_ArrayForEach(entry, plan) {
@@ -67,7 +66,6 @@ TEST(the_plan_as_json) {
   assert_true(cJSON_GetNumberValue(cJSON_GetArrayItem(max, 0)) > 0.01);
   assert_string_equal(cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(gem, "material")),
                       "n-sf11");
-  cJSON_Delete(json);
   run_says("\"$abbe\" plan \"$house\"/scenes/gem.yaml",
            "What runs, and the fact that asks for it:");
   assert_contains(run_output, "What is there, with its size and the middle of its bounds, m:");
@@ -75,23 +73,18 @@ TEST(the_plan_as_json) {
 }
 
 TEST(pictures_are_written) {
-  char path[128];
-  abbe_image image = {0};
   run_must(GEM " -o a.exr --png a.png --save-map map.exr --bits 16");
   assert_string_equal(run_output, "");
-  snprintf(path, sizeof path, "%s/a.exr", run_folder);
-  OK(abbe_exr_read(path, &image, &error));
+  MADE(abbe_image, image, abbe_exr_read(printed("%s/a.exr", run_folder), &image, &error));
   assert_int_equal(image.width, 32);
   assert_int_equal(image.height, 24);
   assert_string_equal(abbe_image_attribute_text(&image, "abbe:space"), "acescg");
   assert_contains(abbe_image_attribute_text(&image, "abbe:settings"), "7 wavelengths 380:780 nm");
   assert_contains(abbe_image_attribute_text(&image, "abbe:scene"), "gem.yaml");
   abbe_image_free(&image);
-  snprintf(path, sizeof path, "%s/map.exr", run_folder);
-  OK(abbe_exr_read(path, &image, &error));
+  OK(abbe_exr_read(printed("%s/map.exr", run_folder), &image, &error));
   assert_int_equal(image.width, 64);
   assert_true(abbe_image_find_channel(&image, "Y") != (size_t)-1);
-  abbe_image_free(&image);
   /* The same request gives the same bytes. */
   run_must(GEM " -q -o b.exr --png b.png --bits 16 && cmp a.png b.png && cmp a.exr b.exr && rm "
                "a.exr a.png b.exr b.png map.exr");
@@ -108,27 +101,22 @@ TEST(a_map_like_another) {
       "0 -q --map-like a.exr --map-light 1 --save-map b.exr && \"$abbe\" info b.exr && rm b.exr",
       "640 x 640 pixels");
   assert_contains(run_output, "abbe:map_light: lamp");
-  assert_int_equal(run_line(GEM " --map-like a.exr --map-light moon --save-map b.exr"), 2);
-  assert_contains(run_errors, "no light is called 'moon'; its lights are 1 'lamp'");
-  assert_int_equal(run_line("\"$abbe\" render \"$house\"/scenes/sphere.yaml" SMALL
-                            " --map-like a.exr --save-map b.exr"),
-                   2);
-  assert_contains(run_errors, "for a light in another place than 'lamp'");
-  assert_int_equal(run_line("\"$abbe\" render \"$house\"/scenes/sphere.yaml" SMALL
-                            " --profile thesis --map-like a.exr --save-map b.exr"),
-                   2);
-  assert_contains(run_errors, "thesis");
-  assert_int_equal(
-      run_line("rm a.exr; " GEM " -q -o a.exr && " GEM " --map-like a.exr --save-map b.exr"), 1);
-  assert_contains(run_errors, "a.exr: there is no attribute abbe:map_view");
-  assert_int_equal(run_line("rm a.exr; " GEM " --map-like a.exr --save-map b.exr"), 1);
-  assert_contains(run_errors, "a.exr");
+  run_fails(GEM " --map-like a.exr --map-light moon --save-map b.exr", 2,
+            "no light is called 'moon'; its lights are 1 'lamp'");
+  run_fails("\"$abbe\" render \"$house\"/scenes/sphere.yaml" SMALL
+            " --map-like a.exr --save-map b.exr",
+            2, "for a light in another place than 'lamp'");
+  run_fails("\"$abbe\" render \"$house\"/scenes/sphere.yaml" SMALL
+            " --profile thesis --map-like a.exr --save-map b.exr",
+            2, "thesis");
+  run_fails("rm a.exr; " GEM " -q -o a.exr && " GEM " --map-like a.exr --save-map b.exr", 1,
+            "a.exr: there is no attribute abbe:map_view");
+  run_fails("rm a.exr; " GEM " --map-like a.exr --save-map b.exr", 1, "a.exr");
   assert_int_equal(run_left(), 0);
 }
 
 TEST(error_bars) {
-  abbe_image image = {0};
-  cJSON *json =
+  HELD(cJSON, json) =
       run_json(GEM " -o a.exr --error-bars=2 --error-png e.png --json && test -s e.png", 0);
   const cJSON *bars = cJSON_GetObjectItemCaseSensitive(json, "error_bars");
   const cJSON *caustic = cJSON_GetObjectItemCaseSensitive(bars, "caustic");
@@ -137,12 +125,10 @@ TEST(error_bars) {
   assert_true(json_number(bars, "ms") > 0);
   assert_true(json_number(caustic, "relative_rmse") > 0);
   assert_true(json_number(caustic, "ciede2000_mean") > 0);
-  cJSON_Delete(json);
-  OK(abbe_exr_read(run_path("a.exr"), &image, &error));
+  MADE(abbe_image, image, abbe_exr_read(run_path("a.exr"), &image, &error));
   assert_int_equal(image.channels, 6);
   assert_true(abbe_image_find_channel(&image, "stderr.G") != (size_t)-1);
   assert_contains(abbe_image_attribute_text(&image, "abbe:stderr"), "what is not modelled");
-  abbe_image_free(&image);
   /* The errors leave the picture alone; the mean is another. */
   run_must(GEM " -q --png b.png && " GEM " -q --png c.png --error-bars=2 && cmp b.png c.png");
   run_must(GEM " -q --png c.png --error-bars=2 --mean && ! cmp -s b.png c.png");
@@ -156,10 +142,8 @@ TEST(error_bars) {
       {GEM " -o a.exr --error-bars --mean --aovs", "--mean has no --aovs"},
       {GEM " -o a.exr --error-bars --profile thesis", "'thesis' has no error bars"},
   };
-  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
-    assert_int_equal(run_line(refused[i].line), 2);
-    assert_contains(run_errors, refused[i].says);
-  }
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
+    run_fails(refused[i].line, 2, refused[i].says);
   assert_int_equal(run_left(), 0);
 }
 
@@ -168,12 +152,9 @@ TEST(every_command_has_help) {
                                          "display", "info", "compare"};
   run_must("\"$abbe\" help");
   for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
-    char line[128];
     run_says("\"$abbe\" help", commands[i]);
-    snprintf(line, sizeof line, "\"$abbe\" help %s", commands[i]);
-    run_says(line, "Examples:");
-    snprintf(line, sizeof line, "\"$abbe\" %s --help", commands[i]);
-    run_says(line, "Examples:");
+    run_says(printed("\"$abbe\" help %s", commands[i]), "Examples:");
+    run_says(printed("\"$abbe\" %s --help", commands[i]), "Examples:");
   }
   run_says("\"$abbe\" --version", "abbe ");
 }

@@ -7,8 +7,7 @@
 
 /* Extent of the stone along z, m, by the plan. */
 static double height(const char *options) {
-  char line[256];
-  snprintf(line, sizeof line, "\"$abbe\" plan " STONE "--json %s", options);
+  const char *line = printed("\"$abbe\" plan " STONE "--json %s", options);
   if (run_line(line) != 0) fail_msg("%s", run_errors);
   cJSON *json = cJSON_Parse(run_output);
   const cJSON *stone = cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(json, "objects"), 0);

@@ -19,10 +19,9 @@ static inline void find(const abbe_view_state *s, abbe_view_outline *out) {
   const abbe_view_document *now = abbe_view_history_now(&s->history);
   const abbe_scene_options options = {.set = (const char *const *)now->set,
                                       .set_count = now->set_count};
-  OWNED(abbe_scene, scene);
   FREED char *text = NULL;
   size_t size;
-  OK(abbe_scene_load(now->path, &options, &scene, &error));
+  MADE(abbe_scene, scene, abbe_scene_load(now->path, &options, &scene, &error));
   OK(abbe_scene_text(now->path, &options, &text, &size, &error));
   OK(abbe_view_outline_make(&scene, text, size, out, &error));
   out->camera = scene.camera;

@@ -22,8 +22,7 @@ TEST(the_story) {
   run_must("cmp story-again.png story.png");
   /* keeping has said the same command */
   run_must("sed -n 's/^command //p' said > lines && grep -q -x -F -f lines said");
-  run_must("rm said lines again.sh story-again.exr story.exr story.yaml *.png");
-  assert_int_equal(run_left(), 0);
+  run_clears("rm said lines again.sh story-again.exr story.exr story.yaml *.png");
 }
 
 TEST(what_is_wrong_is_said_and_the_picture_stays) {
@@ -38,8 +37,7 @@ TEST(what_is_wrong_is_said_and_the_picture_stays) {
   /* a name that Dear ImGui would not show to its end is another in the panel */
   run_must("cmp first.png good.png && ! cmp -s first.png renamed.png");
   run_must("rm *.yaml *.png");
-  run_must(VIEW "--last balanced --size 500x200 --script " SCRIPTS "refused.txt");
-  assert_int_equal(run_left(), 0);
+  run_clears(VIEW "--last balanced --size 500x200 --script " SCRIPTS "refused.txt");
 }
 
 /* The design is one of the scene's files: it is read again when it changes, and the scene is kept
@@ -58,8 +56,7 @@ TEST(a_design_is_a_file_of_the_scene) {
   run_must("\"$abbe\" view in/cut.yaml " FEW
            "--last balanced --size 420x64 --keep out/kept --script a.txt && ! test -e "
            "out/kept.yaml && test -e out/kept.exr");
-  run_must("rm -r in out a.txt");
-  assert_int_equal(run_left(), 0);
+  run_clears("rm -r in out a.txt");
 }
 
 /* Its sliders begin at its own angles; the same angles are set for other commands. */
@@ -70,10 +67,8 @@ TEST(a_design_is_recut) {
   run_must("\"$abbe\" view cut.yaml --last moving --size 420x300 --script " SCRIPTS "recut.txt");
   run_must("! cmp -s recut.png own.png && rm *.png");
   run_must("\"$abbe\" plan cut.yaml --set objects.gem.crown=38 > /dev/null");
-  assert_int_equal(run_line("\"$abbe\" plan cut.yaml --set objects.gem.crown=95"), 1);
-  assert_contains(run_errors, "between 0 and 90 degrees");
-  run_must("rm cut.yaml step-square.asc");
-  assert_int_equal(run_left(), 0);
+  run_fails("\"$abbe\" plan cut.yaml --set objects.gem.crown=95", 1, "between 0 and 90 degrees");
+  run_clears("rm cut.yaml step-square.asc");
 }
 
 TEST(what_is_shown_beside_the_picture) {
@@ -85,8 +80,7 @@ TEST(what_is_shown_beside_the_picture) {
   /* what is kept is what was looked at: luminance, distances */
   run_must("! cmp -s kept.png kept-distance.png && test -s gem-view.exr");
   run_must("grep -q -e \"--display sRGB --view Plain --exposure 1\" said");
-  run_must("rm *.png gem-view.exr gem-view.yaml said");
-  assert_int_equal(run_left(), 0);
+  run_clears("rm *.png gem-view.exr gem-view.yaml said");
 }
 
 /* A whole turn comes back to where it began, and what stood stands again. */
@@ -98,8 +92,7 @@ TEST(a_turntable) {
            "--last accurate --size 404x64 --keep a --script a.txt");
   run_must("test $(ls a-turn-0*.png | wc -l) = 36 && cmp a-turn-0001.png a.png");
   run_must("! cmp -s a-turn-0001.png a-turn-0019.png; grep -q acTL a-turn.png");
-  run_must("rm a*");
-  assert_int_equal(run_left(), 0);
+  run_clears("rm a*");
 }
 
 /* What was drawn in a context that is lost is drawn again in another, to the bit. */
@@ -108,8 +101,7 @@ TEST(a_lost_context_is_made_good) {
   run_must("ABBE_LOST=lost LD_PRELOAD=" ABBE_LOST_CONTEXT " \"$abbe\" view good.yaml " FEW
            "--last accurate --size 500x200 --script " SCRIPTS "lost.txt");
   assert_contains(run_errors, "lost_context: a context is lost");
-  run_must("rm good.yaml lost");
-  assert_int_equal(run_left(), 0);
+  run_clears("rm good.yaml lost");
 }
 
 /* The sun is dragged, and caustics are looked up there; rendering by the command that is said gives
@@ -125,8 +117,7 @@ TEST(caustics_are_looked_up) {
   run_must("grep -q -e '--volume .*--set .lights.sun.direction' again.sh");
   run_must("echo \"$(cat again.sh) --backend cpu -q\" > again.sh && . ./again.sh");
   run_must("\"$abbe\" compare a-again.exr a.exr --tolerance relative_rmse=1e-6");
-  run_must("rm ball.yaml a* said v.exr");
-  assert_int_equal(run_left(), 0);
+  run_clears("rm ball.yaml a* said v.exr");
   assert_true(
       run_refuses(VIEW "--volume \"$house\"/scenes/gem.yaml --script /dev/null", 1, "gem.yaml: "));
 }
@@ -136,13 +127,12 @@ TEST(what_is_read_is_not_written_over) {
   run_must("mkdir scenes; cp \"$house\"/scenes/sphere.yaml scenes/gem.yaml");
   run_must("cp scenes/gem.yaml other-view.yaml; ln scenes/gem.yaml link.yaml");
   run_must("cp scenes/gem.yaml before.yaml");
-  assert_int_equal(run_line("\"$abbe\" view scenes/gem.yaml --keep scenes/gem --script /dev/null"),
-                   2);
-  assert_contains(run_errors, "--keep scenes/gem would write over scenes/gem.yaml");
-  assert_int_equal(run_line("\"$abbe\" view scenes/gem.yaml --keep ./link --script /dev/null"), 2);
-  assert_contains(run_errors, "choose another name");
-  assert_int_equal(run_line("\"$abbe\" view scenes/gem.yaml --keep scenes/ --script /dev/null"), 2);
-  assert_contains(run_errors, "names no files");
+  run_fails("\"$abbe\" view scenes/gem.yaml --keep scenes/gem --script /dev/null", 2,
+            "--keep scenes/gem would write over scenes/gem.yaml");
+  run_fails("\"$abbe\" view scenes/gem.yaml --keep ./link --script /dev/null", 2,
+            "choose another name");
+  run_fails("\"$abbe\" view scenes/gem.yaml --keep scenes/ --script /dev/null", 2,
+            "names no files");
   /* another scene than at the start, picked in the panel, is kept under its own name; back at the
    * first one that would be written over */
   run_must(
@@ -155,13 +145,11 @@ TEST(what_is_read_is_not_written_over) {
   /* what is no scene is not to be picked */
   run_must("cp \"$house\"/scenes/water/clear-water.yaml table.yaml; printf 'choose scene "
            "table.yaml' > a.txt");
-  assert_int_equal(
-      run_line("\"$abbe\" view other.yaml --last moving --size 420x600 --script a.txt"), 1);
-  assert_contains(run_errors, "there is no 'table.yaml' in sight");
+  run_fails("\"$abbe\" view other.yaml --last moving --size 420x600 --script a.txt", 1,
+            "there is no 'table.yaml' in sight");
   run_must("cmp before.yaml other-view.yaml && cmp before.yaml scenes/gem.yaml");
   run_must("test ! -e other-view.exr && test ! -e scenes/gem.exr");
-  run_must("rm -r scenes *.yaml a.txt other-view-view.exr other-view-view.png");
-  assert_int_equal(run_left(), 0);
+  run_clears("rm -r scenes *.yaml a.txt other-view-view.exr other-view-view.png");
 }
 
 TEST(scripts_that_do_not_hold) {
@@ -184,20 +172,17 @@ TEST(scripts_that_do_not_hold) {
                {"size 0x5", "WxH", 1},
                {"key control+s", "", 0}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    char line[512];
-    snprintf(line, sizeof line, "printf '%s\\n' > a.txt", cases[i].line);
+    const char *line = printed("printf '%s\\n' > a.txt", cases[i].line);
     run_must(line);
-    const int code = run_line("\"$abbe\" view \"$house\"/scenes/sphere.yaml --last moving "
-                              "--size 360x40 --script a.txt");
+    const int code = run_line(
+        "\"$abbe\" view \"$house\"/scenes/sphere.yaml --last moving --size 360x40 --script a.txt");
     if (code != cases[i].code) fail_msg("'%s' ends with %d: %s", line, code, run_errors);
     assert_contains(run_errors, cases[i].sentence);
   }
   run_must("echo wait balanced > a.txt");
-  assert_int_equal(
-      run_line("\"$abbe\" view \"$house\"/scenes/sphere.yaml --size 256x200 --script a.txt"), 1);
-  assert_contains(run_errors, "no room for a picture; --size makes the window wide");
-  run_must("rm a.txt");
-  assert_int_equal(run_left(), 0);
+  run_fails("\"$abbe\" view \"$house\"/scenes/sphere.yaml --size 256x200 --script a.txt", 1,
+            "no room for a picture; --size makes the window wide");
+  run_clears("rm a.txt");
 }
 
 TEST(without_a_display) {

@@ -16,7 +16,7 @@ static void set(abbe_view_document *d, const char *key, const char *value) {
 }
 
 TEST(a_key_has_one_value) {
-  abbe_view_document d = gem();
+  OWNED(abbe_view_document, d) = gem();
   set(&d, "ambient", "1");
   set(&d, "camera.fov", "30");
   set(&d, "ambient", "2");
@@ -26,21 +26,15 @@ TEST(a_key_has_one_value) {
   assert_string_equal(abbe_view_document_value(&d, "ambient"), "2");
   assert_null(abbe_view_document_value(&d, "ambien"));
   assert_null(abbe_view_document_value(&d, "camera"));
-  abbe_view_document_free(&d);
 }
 
 TEST(one_change_too_many_is_refused) {
-  abbe_view_document d = gem();
-  char key[16];
-  for (int i = 0; i < ABBE_VIEW_MOST_CHANGES; i++) {
-    snprintf(key, sizeof key, "k%d", i);
-    set(&d, key, "1");
-  }
+  OWNED(abbe_view_document, d) = gem();
+  for (int i = 0; i < ABBE_VIEW_MOST_CHANGES; i++) set(&d, printed("k%d", i), "1");
   REFUSED(ABBE_INVALID_ARGUMENT, "64 changes", abbe_view_document_set(&d, "more", "1", &error));
   assert_int_equal(d.set_count, ABBE_VIEW_MOST_CHANGES);
   set(&d, "k3", "2"); /* one that is there may change on */
   assert_string_equal(d.set[ABBE_VIEW_MOST_CHANGES - 1], "k3=2");
-  abbe_view_document_free(&d);
 }
 
 TEST(points_are_what_is_written) {
@@ -52,7 +46,8 @@ TEST(points_are_what_is_written) {
 }
 
 TEST(what_differs) {
-  abbe_view_document a = gem(), b = gem();
+  OWNED(abbe_view_document, a) = gem();
+  OWNED(abbe_view_document, b) = gem();
   assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_SAME);
   set(&a, "camera.eye", "[1, 0, 0]");
   assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_CAMERA);
@@ -75,13 +70,10 @@ TEST(what_differs) {
   static const char *const others[] = {
       "objects.gem.material", "lights", "environment.rotate", "ambient.x", "time", "materials"};
   for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
-    OWNED(abbe_view_document, c);
-    OK(abbe_view_document_copy(&b, &c, &error));
+    MADE(abbe_view_document, c, abbe_view_document_copy(&b, &c, &error));
     set(&c, others[i], "1");
     assert_int_equal(abbe_view_document_compare(&b, &c), ABBE_VIEW_CHANGED);
   }
-  abbe_view_document_free(&a);
-  abbe_view_document_free(&b);
 }
 
 static void edit(abbe_view_history *h, bool continued, const char *value) {
@@ -121,13 +113,9 @@ TEST(there_and_back) {
 TEST(the_oldest_steps_are_forgotten) {
   static abbe_view_history h;
   abbe_view_document d = gem();
-  char value[16];
   OK(abbe_view_history_begin(&h, &d, &error));
   abbe_view_document_free(&d);
-  for (int i = 0; i < ABBE_VIEW_MOST_STEPS + 5; i++) {
-    snprintf(value, sizeof value, "%d", i);
-    edit(&h, false, value);
-  }
+  for (int i = 0; i < ABBE_VIEW_MOST_STEPS + 5; i++) edit(&h, false, printed("%d", i));
   int steps = 0;
   while (abbe_view_history_undo(&h)) steps++;
   assert_int_equal(steps, ABBE_VIEW_MOST_STEPS - 1);

@@ -20,11 +20,7 @@ static void add(abbe_view_events *q, const char *text) {
 TEST(what_nobody_would_see_is_left_out) {
   static abbe_view_events q;
   abbe_view_event e;
-  char text[64];
-  for (int i = 0; i < 1000; i++) {
-    snprintf(text, sizeof text, "move %d 7", i);
-    add(&q, text);
-  }
+  for (int i = 0; i < 1000; i++) add(&q, printed("move %d 7", i));
   assert_int_equal(q.count, 1);
   add(&q, "down 0");
   add(&q, "move 5 5");
@@ -36,10 +32,7 @@ TEST(what_nobody_would_see_is_left_out) {
   }
   add(&q, "move 9 9");
   add(&q, "wheel -1");
-  for (int i = 1; i < 50; i++) {
-    snprintf(text, sizeof text, "size %d 9", i);
-    add(&q, text);
-  }
+  for (int i = 1; i < 50; i++) add(&q, printed("size %d 9", i));
   add(&q, "key + down");
   add(&q, "key + down"); /* another half stop */
   static const struct {

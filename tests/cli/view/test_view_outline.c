@@ -3,8 +3,10 @@
 
 #include <unistd.h>
 
+HOLDS(abbe_view_state);
+
 TEST(what_can_be_held_is_found) {
-  abbe_view_state *s = begun();
+  HELD(abbe_view_state, s) = begun();
   const abbe_view_outline *o = &s->outline;
   assert_int_equal(o->light_count, 1);
   assert_string_equal(o->light[0].key, "lights.lamp");
@@ -15,11 +17,11 @@ TEST(what_can_be_held_is_found) {
   assert_string_equal(o->object[0].material, "n-sf11");
   assert_string_equal(o->object[1].material, "");
   assert_near(o->object[0].translate[2], 0.15, 1e-12);
-  assert_string_equal(o->object[0].before, "{rotate: {axis: [0, 0, 1], angle: 12}}, "
-                                           "{rotate: {axis: [1, 0, 0], angle: 5}}");
+  assert_string_equal(
+      o->object[0].before,
+      "{rotate: {axis: [0, 0, 1], angle: 12}}, {rotate: {axis: [1, 0, 0], angle: 5}}");
   assert_string_equal(o->object[0].value[0].key, "objects.gem.crown");
   assert_near(o->object[0].value[0].value, 0.013, 1e-12);
-  abbe_view_state_free(s);
 }
 
 /* Of a studio: its surroundings turn, and the angles of a cut are set. */
@@ -81,7 +83,7 @@ TEST(a_design_begins_with_its_own_angles) {
 
 /* Whoever takes hold again before the scene is read again goes on from where it was left. */
 TEST(what_was_pulled_stands_at_once) {
-  abbe_view_state *s = begun();
+  HELD(abbe_view_state, s) = begun();
   const abbe_view_object *gem_of = &s->outline.object[0];
   double xy[2], middle[3];
   assert_true(abbe_view_camera_project(&s->camera, 512, 512, gem_of->middle, xy));
@@ -107,13 +109,12 @@ TEST(what_was_pulled_stands_at_once) {
   assert_true(lamp < -0.03);
   learn(s);
   assert_near(s->outline.light[0].position[0], lamp, 1e-6);
-  abbe_view_state_free(s);
 }
 
 /* Back and forth, and taken hold of before the scene is read again: from where the document has it.
  */
 TEST(what_was_undone_stands_at_once) {
-  abbe_view_state *s = begun();
+  HELD(abbe_view_state, s) = begun();
   double lamp[2], stone[2], moved[2][3];
   const abbe_view_outline *o = &s->outline;
   abbe_view_state_wheel(s, -6, 0.5);
@@ -123,8 +124,7 @@ TEST(what_was_undone_stands_at_once) {
   const double own[2][3] = {
       {o->light[0].position[0], o->light[0].position[1], o->light[0].position[2]},
       {o->object[0].middle[0], o->object[0].middle[1], o->object[0].middle[2]}};
-  char before[256];
-  snprintf(before, sizeof before, "%s", o->object[0].before);
+  const char *before = printed("%s", o->object[0].before);
   drag(s, ABBE_VIEW_LEFT, lamp[0], lamp[1], lamp[0] - 30, lamp[1], 0);
   learn(s);
   memcpy(moved[0], o->light[0].position, sizeof moved[0]);
@@ -145,17 +145,16 @@ TEST(what_was_undone_stands_at_once) {
   assert_memory_equal(o->object[0].middle, own[1], sizeof own[1]);
   assert_true(abbe_view_state_redo(s, 4));
   assert_true(o->object[0].middle[0] > own[1][0] + 0.01);
-  abbe_view_state_free(s);
 }
 
 /* One brick, put where it is in four ways: by steps alone, by `fit`, by `centre`, by both. */
 static const char *const brick[] = {
     "shape: box, size: [0.02, 0.01, 0.006], transform: [{translate: [0.005, 0, 0.1]}]",
     "shape: box, size: [20, 10, 6], fit: 0.02, transform: [{translate: [5, 0, 100]}]",
-    "shape: box, size: [0.02, 0.01, 0.006], centre: [0.005, 0, 0.1], "
-    "transform: [{translate: [0, 3, 0]}]",
-    "shape: box, size: [20, 10, 6], transform: [{translate: [700, 0, 0]}], fit: 0.02, "
-    "centre: [0.005, 0, 0.1]"};
+    "shape: box, size: [0.02, 0.01, 0.006], centre: [0.005, 0, 0.1], transform: [{translate: [0, "
+    "3, 0]}]",
+    "shape: box, size: [20, 10, 6], transform: [{translate: [700, 0, 0]}], fit: 0.02, centre: "
+    "[0.005, 0, 0.1]"};
 enum { BRICKS = sizeof brick / sizeof *brick };
 
 static void begin_with_object(abbe_view_state *s, const char *text) {
@@ -233,7 +232,7 @@ TEST(what_is_fitted_is_sized_by_its_longest_side) {
 
 /* What a job has found of an older change is no place for what was undone since. */
 TEST(an_older_scene_moves_nothing_back) {
-  abbe_view_state *s = begun();
+  HELD(abbe_view_state, s) = begun();
   static abbe_view_outline older;
   double lamp[2], own[3];
   const abbe_view_outline *o = &s->outline;
@@ -250,5 +249,4 @@ TEST(an_older_scene_moves_nothing_back) {
   learn(s);
   assert_true(abbe_view_state_redo(s, 3));
   assert_true(o->light[0].position[0] < own[0] - 0.01);
-  abbe_view_state_free(s);
 }

@@ -1,6 +1,8 @@
 /* The viewer without its window, by scripted events. */
 #include "tests/cli/view/learnt.h"
 
+HOLDS(abbe_view_state);
+
 /* A mirror is taken hold of as a stone is, and is of a metal, which no stone is. */
 TEST(mirrors_are_held_and_of_a_metal) {
   char path[] = ABBE_SOURCE_DIR "/scenes/metals.yaml";
@@ -27,7 +29,7 @@ TEST(mirrors_are_held_and_of_a_metal) {
 }
 
 TEST(a_drag_turns_the_camera_in_one_step) {
-  abbe_view_state *s = begun();
+  HELD(abbe_view_state, s) = begun();
   const abbe_camera before = s->camera;
   drag(s, ABBE_VIEW_LEFT, 40, 400, 140, 400, 0);
   assert_int_equal(s->history.count, 2);
@@ -43,11 +45,10 @@ TEST(a_drag_turns_the_camera_in_one_step) {
   assert_memory_equal(s->camera.eye, before.eye, sizeof before.eye);
   assert_true(abbe_view_state_key(s, 'y', true, ABBE_VIEW_CONTROL, 3));
   assert_memory_equal(s->camera.eye, led.eye, sizeof led.eye);
-  abbe_view_state_free(s);
 }
 
 TEST(other_buttons_pan_and_look) {
-  abbe_view_state *s = begun();
+  HELD(abbe_view_state, s) = begun();
   const abbe_camera before = s->camera;
   drag(s, ABBE_VIEW_MIDDLE, 40, 400, 140, 400, 0);
   assert_true(s->camera.eye[0] < before.eye[0] && s->camera.target[0] < before.target[0]);
@@ -68,11 +69,10 @@ TEST(other_buttons_pan_and_look) {
   const abbe_camera there = s->camera;
   abbe_view_state_tick(s, 0.1, 5.3);
   assert_memory_equal(&s->camera, &there, sizeof there);
-  abbe_view_state_free(s);
 }
 
 TEST(handles_move_and_tilt_objects) {
-  abbe_view_state *s = begun();
+  HELD(abbe_view_state, s) = begun();
   double xy[2], middle[3];
   memcpy(middle, s->outline.object[0].middle, sizeof middle);
   assert_true(abbe_view_camera_project(&s->camera, 512, 512, middle, xy));
@@ -92,12 +92,11 @@ TEST(handles_move_and_tilt_objects) {
   assert_contains(value(s, "objects.gem.transform"), "angle: 28.6");
   learn(s);
   assert_contains(s->outline.object[0].before, "angle: 5}}, {rotate");
-  abbe_view_state_free(s);
 }
 
 /* Handles are where the picture that stands has them, and there they are taken hold of. */
 TEST(handles_are_of_the_picture) {
-  abbe_view_state *s = begun();
+  HELD(abbe_view_state, s) = begun();
   abbe_view_handle first, then;
   assert_true(abbe_view_state_handle(s, 0, &first));
   drag(s, ABBE_VIEW_MIDDLE, 40, 400, 140, 400, 0);
@@ -114,12 +113,11 @@ TEST(handles_are_of_the_picture) {
   assert_near(first.xy[0], then.xy[0] + 50, 0.5);
   assert_near(first.xy[1], then.xy[1], 0.5);
   abbe_view_state_release(s, ABBE_VIEW_LEFT, 2.2);
-  abbe_view_state_free(s);
 }
 
 /* Turns of the wheel that follow each other are one step, apart from what was changed before. */
 TEST(the_wheel_is_a_step) {
-  abbe_view_state *s = begun();
+  HELD(abbe_view_state, s) = begun();
   abbe_view_state_set(s, "ambient", "1", false, 1);
   const size_t before = s->history.at;
   abbe_view_state_wheel(s, 1, 1.1);
@@ -139,12 +137,11 @@ TEST(the_wheel_is_a_step) {
   const double nearest = s->camera.eye[1];
   abbe_view_state_wheel(s, -20, 40);
   assert_true(s->camera.eye[1] < nearest); /* and away from there again */
-  abbe_view_state_free(s);
 }
 
 TEST(lights_move) {
   enum { READY = 1u << ABBE_VIEW_MOVING };
-  abbe_view_state *s = begun();
+  HELD(abbe_view_state, s) = begun();
   double xy[2];
   abbe_view_state_wheel(s, -6, 0.9);
   see(s);
@@ -162,7 +159,6 @@ TEST(lights_move) {
   assert_true(abbe_view_state_undo(s, 4));
   learn(s);
   assert_true(s->outline.light[0].position[0] < -0.03);
-  abbe_view_state_free(s);
 }
 
 /* A sun's handle stands on the way to it; dragged on its level it turns what it shines on. */
@@ -194,7 +190,7 @@ TEST(the_sun_moves) {
 
 /* Whoever picks another scene by mistake has lost nothing. */
 TEST(another_scene_is_a_step) {
-  abbe_view_state *s = begun();
+  HELD(abbe_view_state, s) = begun();
   const abbe_camera gems = s->camera;
   abbe_view_state_set(s, "objects.gem.material", "diamond", false, 1);
   abbe_view_state_settings(s, 9, 128, 0, false, 2);
@@ -214,22 +210,20 @@ TEST(another_scene_is_a_step) {
   learn(s);
   assert_string_equal(s->outline.object[0].material, "diamond");
   assert_memory_equal(s->camera.eye, gems.eye, sizeof gems.eye);
-  abbe_view_state_free(s);
 }
 
 TEST(a_click_asks_for_a_spectrum) {
-  abbe_view_state *s = begun();
+  HELD(abbe_view_state, s) = begun();
   const uint64_t serial = s->refine.serial;
   drag(s, ABBE_VIEW_LEFT, 40, 400, 41, 400, 0);
   assert_true(s->picked && s->refine.spectrum);
   assert_int_equal(s->pixel[0], 40);
   assert_int_equal(s->refine.serial, serial); /* nothing has changed */
   assert_int_equal(s->history.count, 1);
-  abbe_view_state_free(s);
 }
 
 TEST(edits_and_settings) {
-  abbe_view_state *s = begun();
+  HELD(abbe_view_state, s) = begun();
   abbe_view_state_set(s, "objects.gem.material", "diamond", false, 1);
   abbe_view_state_set(s, "lights.lamp.intensity", "0.3", false, 2);
   abbe_view_state_set(s, "lights.lamp.intensity", "0.4", true, 2.1);
@@ -245,15 +239,13 @@ TEST(edits_and_settings) {
   snprintf(s->refusal, sizeof s->refusal, "because");
   abbe_view_state_set(s, "ambient", "0.2", false, 6);
   assert_string_equal(s->refusal, ""); /* of what was before */
-  abbe_view_state_free(s);
 }
 
 TEST(a_window_without_room_takes_no_pointer) {
-  abbe_view_state *s = begun();
+  HELD(abbe_view_state, s) = begun();
   abbe_view_state_resize(s, 0, 0, 1);
   drag(s, ABBE_VIEW_LEFT, 40, 400, 140, 400, 0);
   assert_int_equal(s->history.count, 1);
   assert_false(s->refine.held);
   assert_int_equal(abbe_view_state_handle_at(s, 1, 1).kind, ABBE_VIEW_NO_HANDLE);
-  abbe_view_state_free(s);
 }

@@ -15,7 +15,7 @@ static abbe_atlas make(const abbe_atlas_desc *desc) {
 TEST(published_chromaticities) {
   static const double printed[3][3] = {
       {450, 0.15664, 0.01771}, {520, 0.07430, 0.83380}, {600, 0.62704, 0.37249}}; /* [CIE15] */
-  abbe_atlas a = make(&(abbe_atlas_desc){0});
+  OWNED(abbe_atlas, a) = make(&(abbe_atlas_desc){0});
   assert_int_equal(a.count, 301);
   for (int i = 0; i < 3; i++) {
     const abbe_atlas_row *row = &a.row[(int)printed[i][0] - 400];
@@ -32,7 +32,6 @@ TEST(published_chromaticities) {
       assert_true(a.row[i].excess[ABBE_GAMUT_REC709] >= a.row[i].excess[ABBE_GAMUT_REC2020]);
     }
   abbe_atlas_free(&a);
-  abbe_atlas_free(&a);
 }
 
 /* More bands, nearer to the truth; one band is the light's own colour. */
@@ -41,28 +40,26 @@ TEST(bands) {
   static const size_t counts[] = {3, 7, 15, 31, 63};
   for (int i = 0; i < 5; i++) {
     double sum = 0;
-    abbe_atlas a = make(&(abbe_atlas_desc){.bands = counts[i]});
+    OWNED(abbe_atlas, a) = make(&(abbe_atlas_desc){.bands = counts[i]});
     for (size_t k = 0; k < a.count; k++) sum += a.row[k].band_uv;
     assert_true(sum < 0.7 * before);
     before = sum;
-    abbe_atlas_free(&a);
   }
-  abbe_atlas one = make(&(abbe_atlas_desc){.bands = 1, .min_nm = 380, .max_nm = 730});
+  OWNED(abbe_atlas, one) = make(&(abbe_atlas_desc){.bands = 1, .min_nm = 380, .max_nm = 730});
   assert_near(one.row[0].band_xy[0], 0.3127, 5e-4);
   assert_near(one.row[300].band_xy[1], 0.3290, 5e-4);
-  abbe_atlas_free(&one);
 }
 
 TEST(files) {
   static const char png[] = "/tmp/abbe_test_atlas.png", svg[] = "/tmp/abbe_test_atlas.svg";
-  abbe_atlas a = make(&(abbe_atlas_desc){.observer = ABBE_OBSERVER_CIE_2015_10, .bands = 7});
+  OWNED(abbe_atlas, a) =
+      make(&(abbe_atlas_desc){.observer = ABBE_OBSERVER_CIE_2015_10, .bands = 7});
   OK(abbe_atlas_picture(&a, png, &error));
   OK(abbe_atlas_plot(&a, svg, &error));
   assert_int_equal(access(png, R_OK) + access(svg, R_OK), 0);
   assert_int_equal(abbe_atlas_plot(&a, "a.jpg", NULL), ABBE_INVALID_ARGUMENT);
   unlink(png);
   unlink(svg);
-  abbe_atlas_free(&a);
 }
 
 TEST(refused) {

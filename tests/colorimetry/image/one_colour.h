@@ -10,9 +10,8 @@
 static inline void show(const abbe_display_desc *desc, double rgb[3]) {
   static const char *const names[] = {"R", "G", "B"};
   abbe_display *display = NULL;
-  OWNED(abbe_image, image) = {0};
   OK(abbe_display_make(desc, &display, &error));
-  OK(abbe_image_make(1, 1, 3, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(1, 1, 3, names, &image, &error));
   for (int k = 0; k < 3; k++) image.data[k] = (float)rgb[k];
   OK(abbe_display_apply(display, &image, &error));
   for (int k = 0; k < 3; k++) rgb[k] = (double)image.data[k];

@@ -162,8 +162,8 @@ TEST(versions) {
   const abbe_result result = abbe_display_make(&built_in, &display, &why);
   abbe_display_free(display);
   if (result != ABBE_OK) {
-    assert_non_null(strstr(why.text, "built into OpenColorIO 2.2 and later; the OpenColorIO "
-                                     "here is 2."));
+    assert_non_null(
+        strstr(why.text, "built into OpenColorIO 2.2 and later; the OpenColorIO here is 2."));
   } else {
     double grey[3] = {0.18, 0.18, 0.18};
     show(&built_in, grey);
@@ -207,8 +207,7 @@ static double luminance(const double encoded[3]) {
 TEST(looking_at_the_spectrum) {
   enum { FIRST = 400, LAST = 700, COUNT = LAST - FIRST + 1, STEPS = 24 };
   const double half_a_step = 0.5 / 65535;
-  OWNED(abbe_image, image) = {0};
-  OK(abbe_image_make(COUNT, STEPS, 3, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(COUNT, STEPS, 3, names, &image, &error));
   double matrix[9];
   abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
   for (int i = 0; i < COUNT * STEPS; i++) {
@@ -241,14 +240,12 @@ TEST(looking_at_the_spectrum) {
 
 TEST(other_channels_stay) {
   abbe_display *display = make(&(abbe_display_desc){0});
-  OWNED(abbe_image, image) = {0};
-  OWNED(abbe_image, two) = {0};
-  OK(abbe_image_make(3, 2, 5, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(3, 2, 5, names, &image, &error));
   for (int i = 0; i < 30; i++) image.data[i] = 0.18f;
   OK(abbe_display_apply(display, &image, &error));
   for (int i = 0; i < 30; i++)
     assert_true(i % 5 < 3 ? image.data[i] > 0.4f : image.data[i] == 0.18f);
-  OK(abbe_image_make(1, 1, 2, names, &two, &error));
+  MADE(abbe_image, two, abbe_image_make(1, 1, 2, names, &two, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_display_apply(display, &two, &error));
   abbe_display_free(display);
 }
@@ -303,14 +300,13 @@ TEST(list) {
       "Rec.709 / Looking\nRec.709 / Plain\nRec.709 / Raw\n"
       "Rec.2020 / Looking\nRec.2020 / Plain\nRec.2020 / Raw\n"
       "Rec.2100 PQ / Plain\nRec.2100 PQ / Raw\nRec.2100 HLG / Plain\nRec.2100 HLG / Raw\n";
-  char *list = NULL;
+  FREED char *list = NULL;
   OK(abbe_display_list(NULL, &list, &error));
   assert_string_equal(list, expected);
   free(list);
   assert_int_equal(setenv("OCIO", ABBE_SOURCE_DIR "/colorimetry/image/config.ocio", 1), 0);
   OK(abbe_display_list(NULL, &list, &error));
   assert_string_equal(list, expected);
-  free(list);
   assert_int_equal(unsetenv("OCIO"), 0);
 }
 
@@ -318,9 +314,8 @@ TEST(list) {
  * 'h' HLG of Rec.2020's primaries, '-' nothing. */
 static char encoding_of(const abbe_display_desc *desc) {
   abbe_display *display = make(desc);
-  OWNED(abbe_image, image) = {0};
   double p3[8], curve[5];
-  OK(abbe_image_make(1, 1, 3, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(1, 1, 3, names, &image, &error));
   image.xy[0] = 0.7; /* of the scene-linear picture */
   OK(abbe_display_apply(display, &image, &error));
   abbe_rgb_encoding_display_p3(p3, curve);
@@ -376,8 +371,7 @@ TEST(what_other_configurations_tell) {
       "  - !<ColorSpace>\n    name: toned\n    from_scene_reference: !<GroupTransform>\n"
       "      children:\n"
       "        - !<MatrixTransform> {matrix: [0.9, 0.1, 0, 0, 0.2, 0.8, 0, 0, 0, 0.3, 0.7, 0, 0, "
-      "0, "
-      "0, 1]}\n"
+      "0, 0, 1]}\n"
       "        - !<LogTransform> {base: 10}\n";
   static const struct {
     const char *display, *view;
@@ -387,8 +381,7 @@ TEST(what_other_configurations_tell) {
                {"sRGB", "Toned", 's', 's'},
                {"Display P3 - Display", "Toned", 'p', 'p'}};
   for (int roles = 0; roles < 2; roles++) {
-    char config[4000];
-    snprintf(config, sizeof config, text, roles ? ", aces_interchange: ap0" : "");
+    const char *config = printed(text, roles ? ", aces_interchange: ap0" : "");
     OK(abbe_file_write(path, config, strlen(config), &error));
     for (int i = 0; i < 4; i++) {
       const abbe_display_desc desc = {

@@ -65,15 +65,15 @@ TEST(far_exposures) {
  * that tells the primaries, and by what sRGB is; and not in one that tells nothing. */
 TEST(spaces_that_have_no_name) {
   static const char path[] = "/tmp/abbe_test_nameless.ocio";
-  static const char head[] = "ocio_profile_version: %s\nroles: {scene_linear: %s%s}\n%s"
-                             "active_displays: [sRGB, None]\n"
-                             "displays:\n  sRGB:\n    - !<View> {name: Film, colorspace: %s}\n"
-                             "colorspaces:\n  - !<ColorSpace> {name: %s}\n%s";
+  static const char head[] =
+      "ocio_profile_version: %s\nroles: {scene_linear: %s%s}\n%sactive_displays: [sRGB, None]\n"
+      "displays:\n  sRGB:\n    - !<View> {name: Film, colorspace: %s}\n"
+      "colorspaces:\n  - !<ColorSpace> {name: %s}\n%s";
   static const char rules[] =
       "file_rules:\n  - !<Rule> {name: Default, colorspace: scene_linear}\n";
-  static const char of_rec709[] = "  - !<ColorSpace>\n    name: sRGB OETF\n    from_reference: "
-                                  "!<ExponentTransform> {value: [2.2, 2.2, 2.2, 1], direction: "
-                                  "inverse}\n";
+  static const char of_rec709[] =
+      "  - !<ColorSpace>\n    name: sRGB OETF\n    from_reference: !<ExponentTransform> {value: "
+      "[2.2, 2.2, 2.2, 1], direction: inverse}\n";
   static const char of_ap0[] =
       "  - !<ColorSpace>\n    name: video\n    from_scene_reference: !<GroupTransform>\n"
       "      children:\n"
@@ -90,10 +90,9 @@ TEST(spaces_that_have_no_name) {
                {"1", "Linear", "", "sRGB OETF", of_rec709, true},
                {"2", "mine", "", "video", of_ap0, false}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    char text[4000];
-    snprintf(text, sizeof text, head, cases[i].version, cases[i].linear, cases[i].roles,
-             cases[i].version[0] == '2' ? rules : "", cases[i].view, cases[i].linear,
-             cases[i].rest);
+    const char *text = printed(head, cases[i].version, cases[i].linear, cases[i].roles,
+                               cases[i].version[0] == '2' ? rules : "", cases[i].view,
+                               cases[i].linear, cases[i].rest);
     OK(abbe_file_write(path, text, strlen(text), &error));
     for (int s = 0; s < ABBE_RGB_SPACE_COUNT; s++) {
       abbe_display_desc desc = {.config = path,

@@ -41,7 +41,7 @@ TEST(colours_are_nearly_those_of_the_transform) {
       {"sRGB", "Looking"}, {"sRGB", "Plain"}, {"Display P3", "Looking"}, {"Rec.2100 PQ", "Plain"}};
   for (size_t d = 0; d < sizeof shown / sizeof *shown; d++) {
     abbe_display *display = NULL;
-    abbe_image image, exact, quick;
+    OWNED(abbe_image, image) = {0}, exact = {0}, quick = {0};
     uint64_t random = d;
     double sum = 0, most = 0;
     size_t far = 0;
@@ -65,9 +65,6 @@ TEST(colours_are_nearly_those_of_the_transform) {
     assert_true(sum / (3 * COLOURS) < 0.5);
     assert_true(far < 3 * COLOURS / 100);
     assert_true(most < 8);
-    abbe_image_free(&image);
-    abbe_image_free(&exact);
-    abbe_image_free(&quick);
     abbe_display_free(display);
   }
 }
@@ -78,15 +75,12 @@ TEST(colours_beyond_it_are_exact) {
       {-0.01F, 0.2F, 0.5F},   {70, 1, 1},        {1e30F, 1, 0},
       {0.1F, 0.1F, INFINITY}, {NAN, 0.5F, 0.5F}, {0, 0, 0}}; /* the last one is its own node */
   abbe_display *display = NULL;
-  abbe_image image, exact, quick;
+  OWNED(abbe_image, image) = {0}, exact = {0}, quick = {0};
   make_display(NULL, NULL, &display);
   make_image(&image);
   for (size_t i = 0; i < COLOURS; i++)
     memcpy(image.data + 3 * i, beyond[i % (sizeof beyond / sizeof *beyond)], sizeof *beyond);
   show(display, &image, &exact, &quick);
   assert_memory_equal(exact.data, quick.data, 3 * COLOURS * sizeof *exact.data);
-  abbe_image_free(&image);
-  abbe_image_free(&exact);
-  abbe_image_free(&quick);
   abbe_display_free(display);
 }

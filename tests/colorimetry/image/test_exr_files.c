@@ -31,7 +31,7 @@ static bool same(float a, float b) {
 static void compare_part(const abbe_image *image, int part, const char *const *name, int count,
                          const char *what) {
   int data[4], shown[4];
-  float *value = NULL;
+  FREED float *value = NULL;
   char why[300];
   if (!exr_library_read(path, part, name, count, data, shown, &value, why, sizeof why))
     fail_msg("%s: %s", what, why);
@@ -51,7 +51,6 @@ static void compare_part(const abbe_image *image, int part, const char *const *n
         fail_msg("%s: %s of pixel %d is %g, not %g", what, name[k], i, (double)is, (double)right);
     }
   }
-  free(value);
 }
 
 static void compare(const abbe_image *image, const char *const *name, int count, const char *what) {
@@ -185,10 +184,8 @@ static void write_parts(int count) {
 
 /* mark: "" or "#PART". */
 static void reads_part(const char *mark, int part, const char *says) {
-  char name[200];
-  OWNED(abbe_image, image) = {0};
-  snprintf(name, sizeof name, "%s%s", path, mark);
-  OK(abbe_exr_read(name, &image, &error));
+  const char *name = printed("%s%s", path, mark);
+  MADE(abbe_image, image, abbe_exr_read(name, &image, &error));
   assert_string_equal(image.part, says);
   assert_int_equal(image.channels, parts[part].channels);
   compare_part(&image, part, parts[part].name, parts[part].channels, name);
@@ -271,8 +268,7 @@ TEST(every_half) {
   for (int y = 0; y < 65536 / WIDE; y++)
     assert_int_equal(exr_write_scanline_chunk(f, 0, y, row + WIDE * y, WIDE * sizeof *row), 0);
   assert_int_equal(exr_finish(&f), 0);
-  OWNED(abbe_image, image) = {0};
-  OK(abbe_exr_read(path, &image, &error));
+  MADE(abbe_image, image, abbe_exr_read(path, &image, &error));
   compare(&image, (const char *const[]){"Y"}, 1, "every half");
 }
 
@@ -280,9 +276,9 @@ TEST(what_abbe_writes) {
   for (size_t channels = 1; channels <= 6; channels++)
     for (int s = 0; s < SIZES; s++)
       for (int half = 0; half < 2; half++) {
-        OWNED(abbe_image, image) = {0};
-        OK(abbe_image_make((size_t)sizes[s][0], (size_t)sizes[s][1], channels, names, &image,
-                           &error));
+        MADE(abbe_image, image,
+             abbe_image_make((size_t)sizes[s][0], (size_t)sizes[s][1], channels, names, &image,
+                             &error));
         for (size_t i = 0; i < image.width * image.height * channels; i++)
           image.data[i] = (float)(i % 1000) * 0.25f + 1; /* a half can hold it */
         OK((half ? abbe_exr_write_half : abbe_exr_write)(path, &image, &error));
@@ -341,21 +337,19 @@ static long fill_chunks(abbe_image *image, bool half, uint64_t seed, size_t zero
 TEST(chunks_that_deflate_to_their_own_size) {
   for (size_t channels = 1; channels <= 3; channels++)
     for (int half = 0; half < 2; half++) {
-      OWNED(abbe_image, image) = {0};
       size_t met[3] = {0};
-      OK(abbe_image_make(16, 2 * CHUNK_LINES, channels, names, &image, &error));
+      MADE(abbe_image, image,
+           abbe_image_make(16, 2 * CHUNK_LINES, channels, names, &image, &error));
       for (uint64_t seed = 0; seed < 64 && met[1] < 4; seed++)
         for (size_t zeros = 0; zeros < 64 && met[1] < 4; zeros++) {
           const long more = fill_chunks(&image, half, seed, zeros);
           if (labs(more) > 1) continue;
           met[more + 1]++;
-          OWNED(abbe_image, back) = {0};
-          char what[100];
-          snprintf(what, sizeof what, "seed %d, %zu zeros, %zu channels, half %d, %ld bytes more",
-                   (int)seed, zeros, channels, half, more);
+          const char *what = printed("seed %d, %zu zeros, %zu channels, half %d, %ld bytes more",
+                                     (int)seed, zeros, channels, half, more);
           OK((half ? abbe_exr_write_half : abbe_exr_write)(path, &image, &error));
           compare(&image, names, (int)channels, what);
-          OK(abbe_exr_read(path, &back, &error));
+          MADE(abbe_image, back, abbe_exr_read(path, &back, &error));
           compare(&back, names, (int)channels, what);
         }
       if (met[1] == 0) fail_msg("%zu channels, half %d: no such chunk", channels, half);

@@ -5,8 +5,7 @@
 static const char *const rgb[] = {"R", "G", "B"};
 
 TEST(make_is_black_and_named) {
-  OWNED(abbe_image, image) = {0};
-  OK(abbe_image_make(3, 2, 3, rgb, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(3, 2, 3, rgb, &image, &error));
   for (int i = 0; i < 18; i++) assert_true(image.data[i] == 0);
   assert_int_equal(abbe_image_find_channel(&image, "B"), 2);
   assert_true(abbe_image_find_channel(&image, "A") == (size_t)-1);
@@ -29,12 +28,9 @@ TEST(sizes_are_checked_first) {
 }
 
 TEST(attributes_have_a_limit) {
-  OWNED(abbe_image, image) = {0};
-  char name[16];
-  OK(abbe_image_make(1, 1, 3, rgb, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(1, 1, 3, rgb, &image, &error));
   for (int i = 0; i < ABBE_IMAGE_MAX_ATTRIBUTES; i++) {
-    snprintf(name, sizeof name, "a%d", i);
-    OK(abbe_image_set_attribute(&image, name, "", &error));
+    OK(abbe_image_set_attribute(&image, printed("a%d", i), "", &error));
   }
   OK(abbe_image_set_attribute(&image, "a7", "other", &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "'more'", abbe_image_set_attribute(&image, "more", "", &error));
@@ -60,10 +56,8 @@ TEST(what_unfolds) {
 }
 
 TEST(places) {
-  OWNED(abbe_image, a) = {0};
-  OWNED(abbe_image, b) = {0};
-  OK(abbe_image_make(3, 2, 3, rgb, &a, &error));
-  OK(abbe_image_make(3, 2, 3, rgb, &b, &error));
+  MADE(abbe_image, a, abbe_image_make(3, 2, 3, rgb, &a, &error));
+  MADE(abbe_image, b, abbe_image_make(3, 2, 3, rgb, &b, &error));
   assert_int_equal(a.display_window.x1, 2);
   assert_int_equal(a.data_window.y1, 1);
   OK(abbe_image_check_place(&a, "a", &b, "b", &error));
@@ -83,8 +77,7 @@ TEST(names_are_needed) {
 }
 
 TEST(attributes) {
-  OWNED(abbe_image, image) = {0};
-  OK(abbe_image_make(1, 1, 3, rgb, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(1, 1, 3, rgb, &image, &error));
   assert_null(abbe_image_attribute_text(&image, "abbe:space"));
   OK(abbe_image_set_attribute(&image, "abbe:space", "xyz", &error));
   OK(abbe_image_set_attribute(&image, "comment", "", &error));
@@ -97,10 +90,9 @@ TEST(attributes) {
 
 TEST(append) {
   static const char *const more[] = {"S0.500nm", "Z"};
-  abbe_image image, other, twice;
-  OK(abbe_image_make(2, 1, 3, rgb, &image, &error));
-  OK(abbe_image_make(2, 1, 2, more, &other, &error));
-  OK(abbe_image_make(1, 2, 1, more, &twice, &error));
+  MADE(abbe_image, image, abbe_image_make(2, 1, 3, rgb, &image, &error));
+  MADE(abbe_image, other, abbe_image_make(2, 1, 2, more, &other, &error));
+  MADE(abbe_image, twice, abbe_image_make(1, 2, 1, more, &twice, &error));
   for (int i = 0; i < 6; i++) image.data[i] = (float)i;
   for (int i = 0; i < 4; i++) other.data[i] = (float)(10 + i);
   image.xy[0] = 0.64;
@@ -117,9 +109,6 @@ TEST(append) {
   assert_string_equal(abbe_image_attribute_text(&image, "a"), "own");
   assert_string_equal(abbe_image_attribute_text(&image, "b"), "its");
   REFUSED(ABBE_INVALID_ARGUMENT, "'S0.500nm' already", abbe_image_append(&image, &other, &error));
-  abbe_image_free(&twice);
-  abbe_image_free(&other);
-  abbe_image_free(&image);
 }
 
 TEST(bands_are_known_by_their_channels) {

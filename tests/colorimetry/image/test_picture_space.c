@@ -30,14 +30,13 @@ TEST(an_id_says_what_the_numbers_are) {
       {"lin_ciexyzd65_scene", ABBE_RGB_SPACE_XYZ, {0, 1, 0}},
   };
   for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
-    abbe_image image = picture(known[i].id, NULL);
+    OWNED(abbe_image, image) = picture(known[i].id, NULL);
     abbe_picture_space space;
     OK(abbe_picture_space_find(&image, false, "x.exr", &space, &error));
     assert_int_equal(space.space, known[i].space);
     assert_false(space.assumed);
     for (int k = 0; k < 3 && known[i].y[1] > 0; k++)
       assert_near(space.to_xyz[3 + k], known[i].y[k], 6e-5);
-    abbe_image_free(&image);
   }
 }
 
@@ -51,12 +50,11 @@ TEST(an_id_is_of_colours_and_agrees_with_the_chromaticities) {
                  {"srgb_rec709_scene", rec709, "'srgb_rec709_scene' is no linear space"},
                  {"LIN_AP1_SCENE", NULL, "is no linear space"}};
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
-    abbe_image image = picture(refused[i].id, refused[i].xy);
+    OWNED(abbe_image, image) = picture(refused[i].id, refused[i].xy);
     abbe_picture_space space;
     REFUSED(ABBE_COLOUR, refused[i].words,
             abbe_picture_space_find(&image, false, "x.exr", &space, &error));
     OK(abbe_picture_space_find(&image, true, "x.exr", &space, &error)); /* X, Y, Z */
-    abbe_image_free(&image);
   }
 }
 
@@ -71,11 +69,10 @@ TEST(without_an_id_chromaticities_are_meant_and_else_rec709) {
                  {"lin_ap1_scene", ap1, ABBE_RGB_SPACE_ACESCG, false},
                  {NULL, NULL, ABBE_RGB_SPACE_REC709, true}};
   for (size_t i = 0; i < sizeof without / sizeof *without; i++) {
-    abbe_image image = picture(without[i].id, without[i].xy);
+    OWNED(abbe_image, image) = picture(without[i].id, without[i].xy);
     abbe_picture_space space;
     OK(abbe_picture_space_find(&image, false, "x.exr", &space, &error));
     assert_int_equal(space.space, without[i].space);
     assert_int_equal(space.assumed, without[i].assumed);
-    abbe_image_free(&image);
   }
 }

@@ -46,7 +46,7 @@ static void finish(void) {
 GROUP(begin, finish);
 
 TEST(exponents_and_mantissas) {
-  abbe_image image = read_pixels(HEAD "\n-Y 2 +X 3\n", six, sizeof six);
+  OWNED(abbe_image, image) = read_pixels(HEAD "\n-Y 2 +X 3\n", six, sizeof six);
   assert_true(image.width == 3 && image.height == 2 && image.channels == 3);
   check_pixel(&image, 0, 0, 1, 0, 0);
   check_pixel(&image, 1, 0, 0, 255.0 / 256, 1.0 / 256);
@@ -55,7 +55,6 @@ TEST(exponents_and_mantissas) {
   check_pixel(&image, 1, 1, ldexp(200, -135), ldexp(100, -135), ldexp(50, -135));
   check_pixel(&image, 2, 1, 2, 2, 2);
   for (int i = 0; i < 8; i++) assert_true(image.xy[i] == 0);
-  abbe_image_free(&image);
 }
 
 /* The same six pixels in each of the eight directions: where the first and the second come to lie.
@@ -69,13 +68,10 @@ TEST(directions) {
                {"+X 3 -Y 2", {0, 0}, {0, 1}}, {"-X 3 -Y 2", {2, 0}, {2, 1}},
                {"+X 3 +Y 2", {0, 1}, {0, 0}}, {"-X 3 +Y 2", {2, 1}, {2, 0}}};
   for (size_t i = 0; i < 8; i++) {
-    char head[128];
-    snprintf(head, sizeof head, HEAD "\n%s\n", cases[i].size);
-    abbe_image image = read_pixels(head, six, sizeof six);
+    OWNED(abbe_image, image) = read_pixels(printed(HEAD "\n%s\n", cases[i].size), six, sizeof six);
     assert_true(image.width == 3 && image.height == 2);
     check_pixel(&image, cases[i].first[0], cases[i].first[1], 1, 0, 0);
     check_pixel(&image, cases[i].second[0], cases[i].second[1], 0, 255.0 / 256, 1.0 / 256);
-    abbe_image_free(&image);
   }
 }
 
@@ -83,7 +79,7 @@ TEST(header_variables) {
   static const char head[] =
       "#?RGBE\n# EXPOSURE=7\nEXPOSURE= 4\nEXPOSURE=0.5\nCOLORCORR=1 2 0.5\nVIEW=-vtv\n"
       "FORMAT=32-bit_rle_rgbe\nPRIMARIES=0.7 0.3 0.2 0.7 0.1 0.1 0.33 0.33\n\n-Y 2 +X 3\n";
-  abbe_image image = read_pixels(head, six, sizeof six);
+  OWNED(abbe_image, image) = read_pixels(head, six, sizeof six);
   check_pixel(&image, 2, 1, 1, 0.5, 2);
   assert_true(image.xy[0] == 0.7 && image.xy[7] == 0.33);
   abbe_image_free(&image);
@@ -92,14 +88,13 @@ TEST(header_variables) {
   abbe_image_free(&image);
   image = read_pixels("#?RADIANCE\r\n\r\n-Y 2 +X 3\r\n", six, sizeof six);
   check_pixel(&image, 0, 0, 1, 0, 0);
-  abbe_image_free(&image);
 }
 
 /* Runs may be continued, by eight bits more each; the new coding is of each byte by itself. */
 TEST(runs) {
   static const uint8_t old[] = {128, 128, 128, 129, 1, 1,   1, 3, 1, 1,
                                 1,   1,   128, 0,   0, 130, 1, 1, 1, 0};
-  abbe_image image = read_pixels(HEAD "\n-Y 1 +X 261\n", old, sizeof old);
+  OWNED(abbe_image, image) = read_pixels(HEAD "\n-Y 1 +X 261\n", old, sizeof old);
   for (size_t x = 0; x < 260; x++) check_pixel(&image, x, 0, 1, 1, 1);
   check_pixel(&image, 260, 0, 2, 0, 0);
   abbe_image_free(&image);
@@ -114,7 +109,6 @@ TEST(runs) {
     check_pixel(&image, x, 0, 128 * unit, (x < 4 ? 0 : 7) * unit,
                 (x < 9 ? (double)x + 1 : 5) * unit);
   }
-  abbe_image_free(&image);
 }
 
 /* Pixels one by one, of which the second line begins as one in runs does. */
@@ -122,10 +116,9 @@ TEST(flat_pixels) {
   uint8_t flat[2][8][4];
   memset(flat, 128, sizeof flat);
   memcpy(flat[1][0], (const uint8_t[4]){2, 2, 0, 8}, 4);
-  abbe_image image = read_pixels(HEAD "\n-Y 2 +X 8\n", flat, sizeof flat);
+  OWNED(abbe_image, image) = read_pixels(HEAD "\n-Y 2 +X 8\n", flat, sizeof flat);
   check_pixel(&image, 7, 1, 0.5, 0.5, 0.5);
   check_pixel(&image, 0, 1, ldexp(2, 8 - 136), ldexp(2, 8 - 136), 0);
-  abbe_image_free(&image);
 }
 
 TEST(what_is_refused) {

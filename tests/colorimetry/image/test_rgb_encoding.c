@@ -136,13 +136,13 @@ TEST(to_srgb_in_two_ways) {
   for (int i = 0; i < 200; i++) {
     double v[3];
     for (int c = 0; c < 3; c++) v[c] = random_between(&seed, 0, 1);
-    abbe_image a = one_pixel(v[0], v[1], v[2]), b = one_pixel(v[0], v[1], v[2]);
+    OWNED(abbe_image, a) = one_pixel(v[0], v[1], v[2]);
+    abbe_image b = one_pixel(v[0], v[1], v[2]);
     memcpy(a.xy, xy, sizeof xy);
     memcpy(a.curve, curve, sizeof curve);
     OK(abbe_rgb_encoding_to_srgb(&a, "a", &error));
     OK(abbe_rgb_encoding_profile_to_srgb(&b, icc, size, "b", &error));
     pixel_is(&b, (double)a.data[0], (double)a.data[1], (double)a.data[2], 1.5e-3);
-    abbe_image_free(&a);
   }
   /* Rec.709's red, as published for CSS colours, and a red that sRGB cannot hold */
   abbe_image red = one_pixel(0.91749, 0.20029, 0.13856);
@@ -164,22 +164,20 @@ static void *saved(cmsHPROFILE profile, cmsUInt32Number *size) {
 TEST(other_profiles) {
   cmsUInt32Number size = 0;
   cmsToneCurve *linear = cmsBuildGamma(NULL, 1);
-  void *icc = saved(cmsCreateGrayProfile(cmsD50_xyY(), linear), &size);
+  FREED void *icc = saved(cmsCreateGrayProfile(cmsD50_xyY(), linear), &size);
   cmsFreeToneCurve(linear);
   abbe_image grey = one_pixel(0.5, 0.5, 0.5);
   OK(abbe_rgb_encoding_profile_to_srgb(&grey, icc, size, "grey", &error));
   pixel_is(&grey, 0.73536, 0.73536, 0.73536, 1e-3);
-  abbe_image image = one_pixel(0.5, 0.5, 0.5);
+  OWNED(abbe_image, image) = one_pixel(0.5, 0.5, 0.5);
   REFUSED(ABBE_COLOUR, "cut.png",
           abbe_rgb_encoding_profile_to_srgb(&image, icc, 100, "cut.png", &error));
   free(icc);
   icc = saved(cmsCreateLab4Profile(NULL), &size);
   assert_int_equal(abbe_rgb_encoding_profile_to_srgb(&image, icc, size, "lab", NULL), ABBE_COLOUR);
-  free(icc);
   REFUSED(ABBE_INVALID_ARGUMENT, "unstated.png",
           abbe_rgb_encoding_to_srgb(&image, "unstated.png", &error));
   abbe_rgb_encoding_srgb(image.xy, image.curve);
   image.xy[1] = image.xy[3] = image.xy[5] = 0.3; /* primaries on a line */
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_rgb_encoding_to_srgb(&image, "line.png", &error));
-  abbe_image_free(&image);
 }

@@ -26,9 +26,8 @@ static abbe_image picture(void) {
 }
 
 TEST(known_pixels) {
-  abbe_image image = picture();
-  abbe_gamut_check c;
-  OK(abbe_gamut_check_make(&image, "it", ABBE_GAMUT_REC709, &c, &error));
+  OWNED(abbe_image, image) = picture();
+  MADE(abbe_gamut_check, c, abbe_gamut_check_make(&image, "it", ABBE_GAMUT_REC709, &c, &error));
   assert_int_equal(c.lit, 3);
   assert_int_equal(c.outside, 2);
   assert_int_equal(c.x, 0);
@@ -48,31 +47,25 @@ TEST(known_pixels) {
   OK(abbe_gamut_check_make(&image, "it", ABBE_GAMUT_REC2020, &c, &error));
   assert_int_equal(c.outside, 1);
   abbe_gamut_check_free(&c);
-  abbe_gamut_check_free(&c);
-  abbe_image_free(&image);
 }
 
 TEST(what_is_not_finite_is_counted) {
-  abbe_image image = picture();
-  abbe_gamut_check c;
+  OWNED(abbe_image, image) = picture();
   image.data[0] = INFINITY;
   image.data[4] = NAN;
-  OK(abbe_gamut_check_make(&image, "it", ABBE_GAMUT_REC709, &c, &error));
+  MADE(abbe_gamut_check, c, abbe_gamut_check_make(&image, "it", ABBE_GAMUT_REC709, &c, &error));
   assert_true(c.odd.infinite == 1 && c.odd.nan == 1);
   assert_int_equal(c.lit, 1);
-  abbe_gamut_check_free(&c);
-  abbe_image_free(&image);
 }
 
 TEST(pictures_of_it) {
   static const char png[] = "/tmp/abbe_test_overlay.png", svg[] = "/tmp/abbe_test_diagram.svg";
-  abbe_image image = picture(), read = {0};
-  abbe_gamut_check c;
-  OK(abbe_gamut_check_make(&image, "it", ABBE_GAMUT_REC709, &c, &error));
+  OWNED(abbe_image, image) = picture();
+  MADE(abbe_gamut_check, c, abbe_gamut_check_make(&image, "it", ABBE_GAMUT_REC709, &c, &error));
   OK(abbe_gamut_check_overlay(&c, png, &error));
   OK(abbe_gamut_check_diagram(&c, svg, "it", &error));
   assert_int_equal(abbe_gamut_check_diagram(&c, "it.jpg", "it", NULL), ABBE_INVALID_ARGUMENT);
-  OK(abbe_png_read(png, &read, &error));
+  MADE(abbe_image, read, abbe_png_read(png, &read, &error));
   const float *p = read.data;
   assert_true(p[0] == p[1] && p[1] == p[2] && p[0] > 0.5f); /* inside: grey */
   assert_true(p[6] > p[7] + 0.3f);                          /* outside: red */
@@ -82,22 +75,17 @@ TEST(pictures_of_it) {
   fclose(file);
   unlink(png);
   unlink(svg);
-  abbe_image_free(&read);
-  abbe_gamut_check_free(&c);
-  abbe_image_free(&image);
 }
 
 TEST(nothing) {
   static const char *const names[] = {"A", "Z", "S0.5"};
-  abbe_image image = picture(), other = {0};
+  OWNED(abbe_image, image) = picture();
   abbe_gamut_check c;
   memset(image.data, 0, 12 * sizeof *image.data);
   image.data[3] = NAN;
   REFUSED(ABBE_INVALID_ARGUMENT, "it: none of its 2 x 2 pixels is lit",
           abbe_gamut_check_make(&image, "it", ABBE_GAMUT_P3, &c, &error));
   assert_null(c.xyz);
-  OK(abbe_image_make(2, 2, 3, names, &other, &error));
+  MADE(abbe_image, other, abbe_image_make(2, 2, 3, names, &other, &error));
   REFUSED(ABBE_NOT_FOUND, "", abbe_gamut_check_make(&other, "it", ABBE_GAMUT_P3, &c, &error));
-  abbe_image_free(&other);
-  abbe_image_free(&image);
 }

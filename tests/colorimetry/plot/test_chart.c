@@ -62,11 +62,9 @@ static spot find(const abbe_image *image, size_t from, size_t to) {
 /* Three points in even steps of their axes lie in even steps of pixels. */
 static void check_steps(const double *x, const double *y, bool log, bool reversed) {
   abbe_chart_series series = {.style = ABBE_CHART_POINTS, .count = 3, .x = x, .y = y, .colour = 2};
-  abbe_chart chart = {.x = {.log = log, .reversed = reversed},
-                      .y = {.log = log},
-                      .series_count = 1,
-                      .series = &series};
-  abbe_image image = draw(&chart, 1, 400, 300);
+  abbe_chart chart = FIELDS(.x = {.log = log, .reversed = reversed}, .y = {.log = log},
+                            .series_count = 1, .series = &series);
+  OWNED(abbe_image, image) = draw(&chart, 1, 400, 300);
   spot s[3];
   size_t at = 0;
   for (int i = 0; i < 3; i++) {
@@ -81,7 +79,6 @@ static void check_steps(const double *x, const double *y, bool log, bool reverse
   assert_near(s[1].y - s[0].y, s[2].y - s[1].y, 0.6);
   assert_true(s[1].x - s[0].x > 100);
   assert_true(down * (s[0].y - s[1].y) > 80);
-  abbe_image_free(&image);
 }
 
 EACH(make_folder, drop_folder);
@@ -97,7 +94,7 @@ TEST(gaps_and_bars_are_drawn) {
                high[] = {2, 2, 2, 2, 2};
   abbe_chart_series series = {.count = 5, .x = x, .y = y, .colour = 2};
   abbe_chart chart = {.y = {.min = -1, .max = 3}, .series_count = 1, .series = &series};
-  abbe_image image = draw(&chart, 1, 400, 300);
+  OWNED(abbe_image, image) = draw(&chart, 1, 400, 300);
   size_t left = 0, right = image.width - 1;
   while (find(&image, left, left + 1).count == 0) left++;
   while (find(&image, right, right + 1).count == 0) right--;
@@ -124,7 +121,6 @@ TEST(gaps_and_bars_are_drawn) {
       }
   assert_near((top + bottom) / 2, s.y, 1);
   assert_true(bottom - top > 100); /* half of the plot's height */
-  abbe_image_free(&image);
 }
 
 TEST(a_field_has_its_colours_and_scale) {
@@ -132,7 +128,7 @@ TEST(a_field_has_its_colours_and_scale) {
   abbe_chart_field field = {
       .width = 2, .height = 2, .value = value, .map = ABBE_COLOUR_MAP_DIFFERENCE};
   abbe_chart chart = {.field = &field};
-  abbe_image image = draw(&chart, 1, 400, 300);
+  OWNED(abbe_image, image) = draw(&chart, 1, 400, 300);
   /* the plot is square, as its pixels are: about 270 high, left of the scale bar */
   const double at[4] = {0.25, 0.5, 1, NAN};
   for (int i = 0; i < 4; i++) {
@@ -146,7 +142,6 @@ TEST(a_field_has_its_colours_and_scale) {
     }
     if (pixels < 120 * 120) fail_msg("colour %d covers %zu pixels", i, pixels);
   }
-  abbe_image_free(&image);
 }
 
 /* Of the two rows and three columns only one chart has a point; the picture's cells are equal. */
@@ -193,8 +188,7 @@ TEST(a_png_says_that_it_is_srgb) {
   const double x[] = {1, 2}, y[] = {1, 2};
   abbe_chart_series series = {.count = 2, .x = x, .y = y};
   abbe_chart chart = {.series_count = 1, .series = &series};
-  abbe_image image = draw(&chart, 1, 100, 80);
-  abbe_image_free(&image);
+  OWNED(abbe_image, image) = draw(&chart, 1, 100, 80);
   FREED char *data = NULL;
   size_t size = 0;
   OK(abbe_file_read(path[0], 1 << 22, &data, &size, &error));
@@ -219,8 +213,7 @@ TEST(awkward_charts_are_drawn_or_refused) {
                                   .text = names};
   for (int log = 0; log < 2; log++) {
     abbe_chart chart = {.x = {.log = log}, .y = {.log = log}, .series_count = 40, .series = many};
-    abbe_image image = draw(&chart, 1, 64 + 800 * (size_t)log, 64 + 300 * (size_t)log);
-    abbe_image_free(&image);
+    OWNED(abbe_image, image) = draw(&chart, 1, 64 + 800 * (size_t)log, 64 + 300 * (size_t)log);
   }
   const float field[1] = {0};
   abbe_chart_field good = {.width = 1, .height = 1, .value = field}, none = {.width = 1};

@@ -22,20 +22,18 @@ TEST(what_is_meant) {
   } of[] = {{"S0.500nm", true}, {"500nm", true},  {"549", true},    {"551nm", true},
             {"700nm", false},   {"stderr", true}, {"depth", false}, {"depth.Z", true},
             {"stderr.G", true}, {"R", true},      {"none", false},  {"500 nm", false}};
-  OWNED(abbe_image, image);
-  make(&image);
+  FILLED(abbe_image, image, make(&image));
   for (size_t i = 0; i < sizeof of / sizeof *of; i++)
     assert_int_equal(abbe_false_colours_mean(&image, of[i].layer), of[i].meant);
   assert_false(abbe_false_colours_mean(&image, NULL));
 }
 
 TEST(values) {
-  OWNED(abbe_image, image);
-  float *value;
+  FREED float *value = NULL;
   char title[100];
   bool is_error;
   double to_xyz[9];
-  make(&image);
+  FILLED(abbe_image, image, make(&image));
   OK(abbe_false_colours_values(&image, "551nm", "it", &value, title, sizeof title, &is_error,
                                &error));
   assert_string_equal(title, "S0.600nm");
@@ -51,12 +49,11 @@ TEST(values) {
     assert_near(
         (double)value[p],
         to_xyz[3] * (3 + p / 32.0) + to_xyz[4] * (4 + p / 32.0) + to_xyz[5] * (5 + p / 32.0), 1e-5);
-  free(value);
 }
 
 TEST(pictures_and_refusals) {
-  abbe_image image, png;
-  make(&image);
+  abbe_image png;
+  FILLED(abbe_image, image, make(&image));
   image.data[6] = NAN;
   image.data[CHANNELS + 6] = -3;
   static const char *const layers[] = {"500nm", "stderr", "depth.Z", "600nm"};
@@ -73,5 +70,4 @@ TEST(pictures_and_refusals) {
   for (size_t i = 0; i < 32 * CHANNELS; i++) image.data[i] = NAN;
   OK(abbe_false_colours_write("false_colours.png", &image, "stderr", "it", &error));
   remove("false_colours.png");
-  abbe_image_free(&image);
 }

@@ -32,9 +32,8 @@ static const abbe_material *find(const char *name) {
 
 /* Columns of the picture that hold at least so many pixels of that colour. */
 static size_t columns_within(double r, double g, double b, double within, size_t least) {
-  OWNED(abbe_image, image);
   size_t count = 0;
-  OK(abbe_png_read(path, &image, &error));
+  MADE(abbe_image, image, abbe_png_read(path, &image, &error));
   for (size_t x = 0; x < image.width; x++) {
     size_t hits = 0;
     for (size_t y = 0; y < image.height; y++) {
@@ -93,9 +92,8 @@ TEST(continued_curves_are_dashed) {
 
 TEST(fits_and_measurements_are_drawn) {
   const abbe_material *m[2] = {find("n-bk7"), find("f2")};
-  OWNED(abbe_index_points, points);
   const char *csv = "435.8,1.5267,3e-4\n546.1,1.5187,2e-4\n656.3,1.5143,2e-4\n";
-  OK(abbe_index_points_parse(csv, strlen(csv), "p", &points, &error));
+  MADE(abbe_index_points, points, abbe_index_points_parse(csv, strlen(csv), "p", &points, &error));
   abbe_material_chart chart = {.count = 1, .material = m};
   draw(&chart);
   assert_int_equal(columns(0.835, 0.369, 0), 0); /* the first fit's colour */

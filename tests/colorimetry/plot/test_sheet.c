@@ -29,9 +29,8 @@ GROUP(setup, teardown);
 /* Cairo compresses what it draws; the number of pages stands in the open. */
 TEST(pages_are_written) {
   static const char *const names[] = {"R", "G", "B"};
-  abbe_image image;
   abbe_sheet *sheet = begin();
-  OK(abbe_image_make(8, 4, 3, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(8, 4, 3, names, &image, &error));
   OK(abbe_sheet_picture(sheet, 40, 60, 160, 80, &image, &error));
   const double x[2] = {0, 1}, y[2] = {1, 2};
   const abbe_chart_series series = {.count = 2, .x = x, .y = y};
@@ -40,7 +39,6 @@ TEST(pages_are_written) {
   OK(abbe_sheet_chart(sheet, 40, 60, 400, 200, 0.7, &chart, &error));
   assert_int_equal(access(path, F_OK), -1); /* not before it is whole */
   OK(abbe_sheet_finish(sheet, &error));
-  abbe_image_free(&image);
   FILE *file = fopen(path, "rb");
   assert_non_null(file);
   static char data[1 << 20];
@@ -55,17 +53,15 @@ TEST(pages_are_written) {
 
 TEST(wrong_requests_are_refused) {
   static const char *const grey[] = {"Y"};
-  abbe_image image;
   abbe_sheet *sheet;
   REFUSED(ABBE_INVALID_ARGUMENT, ".pdf", abbe_sheet_make("s.png", &sheet, &error));
   REFUSED(ABBE_IO, "", abbe_sheet_make("/nowhere/s.pdf", &sheet, &error));
   sheet = begin();
-  OK(abbe_image_make(2, 2, 1, grey, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(2, 2, 1, grey, &image, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_sheet_picture(sheet, 0, 0, 9, 9, &image, &error));
   const abbe_chart chart = {.x = {.min = 2, .max = 1}};
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_sheet_chart(sheet, 0, 0, 99, 99, 0, &chart, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_sheet_chart(sheet, 0, 0, 99, 99, 1, &chart, &error));
-  abbe_image_free(&image);
   abbe_sheet_free(sheet); /* and no file is there */
   assert_int_equal(access(path, F_OK), -1);
   abbe_sheet_free(NULL);

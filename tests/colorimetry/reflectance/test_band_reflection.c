@@ -6,13 +6,14 @@
 #include "colorimetry/rgb_space.h"
 #include "tests/random.h"
 
+HOLDS(abbe_reflected_light);
+
 static float cell[ABBE_BAND_REFLECTION_CELLS][4];
 static const double even[3] = {1, 1, 1};
 
 static abbe_reflected_light *make(const char *name) {
   abbe_reflected_light *light = NULL;
-  OWNED(abbe_illuminant, illuminant);
-  OK(abbe_illuminant_make(name, &illuminant, &error));
+  MADE(abbe_illuminant, illuminant, abbe_illuminant_make(name, &illuminant, &error));
   OK(abbe_reflected_light_make(&illuminant, 380, 780, &light, &error));
   return light;
 }
@@ -30,7 +31,7 @@ static void fill(const abbe_reflected_light *light, const abbe_spectrum *measure
 
 TEST(greys_keep_their_share) {
   static const double grey[3] = {0.37, 0.37, 0.37};
-  abbe_reflected_light *light = make("D65");
+  HELD(abbe_reflected_light, light) = make("D65");
   double white[3];
   uint64_t random = 7;
   abbe_reflected_light_white(light, white);
@@ -41,13 +42,12 @@ TEST(greys_keep_their_share) {
     abbe_band_reflection_apply((const float(*)[4])cell, white, xyz, out);
     for (int k = 0; k < 3; k++) assert_near(out[k], 0.37 * xyz[k], 1e-6);
   }
-  abbe_reflected_light_free(light);
 }
 
 TEST(white_light_is_exact) {
   static const char *const lights[] = {"D65", "A", "F11", "LED-RGB1"};
   for (size_t l = 0; l < 4; l++) {
-    abbe_reflected_light *light = make(lights[l]);
+    HELD(abbe_reflected_light, light) = make(lights[l]);
     double white[3], wanted[3][3], out[3];
     abbe_reflected_light_white(light, white);
     for (size_t p = 0; p < ABBE_COLOUR_CHECKER_COUNT; p++) {
@@ -58,7 +58,6 @@ TEST(white_light_is_exact) {
       for (int k = 0; k < 3; k++) assert_near(out[k], wanted[0][k], 1e-6);
       abbe_spectrum_free(patch);
     }
-    abbe_reflected_light_free(light);
   }
 }
 
@@ -125,7 +124,7 @@ TEST(light_that_is_spread) {
                 {"soft edges", soft, 0.12},
                 {"tints", tint, 0.03}};
   static const char *const patches[] = {"red", "bluish green", "blue flower", "foliage", "orange"};
-  abbe_reflected_light *light = make("D65");
+  HELD(abbe_reflected_light, light) = make("D65");
   for (size_t p = 0; p < 5; p++) {
     abbe_spectrum *patch = patch_of(patches[p]);
     for (size_t l = 0; l < 5; l++) {
@@ -138,12 +137,11 @@ TEST(light_that_is_spread) {
     }
     abbe_spectrum_free(patch);
   }
-  abbe_reflected_light_free(light);
 }
 
 TEST(colours_add_up) {
   static const double rgb[3] = {0.7, 0.2, 0.4}, xyz[3] = {0.5, 0.3, 0.1};
-  abbe_reflected_light *light = make("A");
+  HELD(abbe_reflected_light, light) = make("A");
   double white[3], whole[3], sum[3] = {0}, part[3];
   abbe_reflected_light_white(light, white);
   fill(light, NULL, rgb);
@@ -155,7 +153,6 @@ TEST(colours_add_up) {
     for (int k = 0; k < 3; k++) sum[k] += part[k];
   }
   for (int k = 0; k < 3; k++) assert_near(sum[k], whole[k], 1e-6);
-  abbe_reflected_light_free(light);
 }
 
 /* A line, or a range that nobody sees, has no colours to tell bands by. */
@@ -164,7 +161,7 @@ TEST(lights_of_few_colours) {
   static const abbe_illuminant d65 = {.kind = ABBE_ILLUMINANT_D65};
   static const double ranges[][2] = {{589, 590}, {900, 1000}};
   for (size_t i = 0; i < 2; i++) {
-    abbe_reflected_light *light = NULL;
+    HELD(abbe_reflected_light, light) = NULL;
     double white[3], of[3][3], out[3];
     OK(abbe_reflected_light_make(&d65, ranges[i][0], ranges[i][1], &light, &error));
     abbe_reflected_light_white(light, white);
@@ -173,6 +170,5 @@ TEST(lights_of_few_colours) {
     abbe_band_reflection_apply((const float(*)[4])cell, white, white, out);
     for (int k = 0; k < 3; k++)
       assert_near(out[k], rgb[0] * of[0][k] + rgb[1] * of[1][k] + rgb[2] * of[2][k], 1e-3);
-    abbe_reflected_light_free(light);
   }
 }

@@ -21,9 +21,8 @@ TEST(colours_are_near_the_printed_ones) {
       {0.4480, 0.4703, 0.5910}, {0.3635, 0.2325, 0.1977}, {0.1958, 0.2519, 0.1977},
       {0.3101, 0.3163, 0.9001}, {0.3101, 0.3163, 0.5910}, {0.3101, 0.3163, 0.3620},
       {0.3101, 0.3163, 0.1977}, {0.3101, 0.3163, 0.0900}, {0.3101, 0.3163, 0.0313}};
-  OWNED(abbe_illuminant, c) = {0};
   abbe_reflected_light *light = NULL;
-  OK(abbe_illuminant_make("C", &c, &error));
+  MADE(abbe_illuminant, c, abbe_illuminant_make("C", &c, &error));
   OK(abbe_reflected_light_make(&c, 360, 830, &light, &error));
   for (size_t i = 0; i < ABBE_COLOUR_CHECKER_COUNT; i++) {
     abbe_spectrum *spectrum = make(abbe_colour_checker_name(i));
@@ -104,9 +103,8 @@ static const double of_mean[ABBE_COLOUR_CHECKER_COUNT][3] = {
 
 TEST(a_printed_pair_is_computed) {
   double nm[MEAN_POINTS], value[MEAN_POINTS];
-  OWNED(abbe_illuminant, d50) = {0};
   abbe_reflected_light *light = NULL;
-  OK(abbe_illuminant_make("D50", &d50, &error));
+  MADE(abbe_illuminant, d50, abbe_illuminant_make("D50", &d50, &error));
   OK(abbe_reflected_light_make(&d50, 380, 780, &light, &error));
   for (size_t i = 0; i < ABBE_COLOUR_CHECKER_COUNT; i++) {
     abbe_spectrum *spectrum = NULL;

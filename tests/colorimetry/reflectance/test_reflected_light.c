@@ -4,6 +4,8 @@
 #include "colorimetry/reflectance/reflected_light.h"
 #include "colorimetry/rgb_space.h"
 
+HOLDS(abbe_reflected_light);
+
 static abbe_reflected_light *make(const char *name, double min_nm, double max_nm,
                                   abbe_illuminant *illuminant) {
   abbe_reflected_light *light = NULL;
@@ -31,7 +33,7 @@ TEST(measured_patches_are_integrals) {
   static const char *const lights[] = {"D65", "A", "F11", "LED-RGB1"};
   for (size_t l = 0; l < 4; l++) {
     OWNED(abbe_illuminant, illuminant);
-    abbe_reflected_light *light = make(lights[l], 380, 780, &illuminant);
+    HELD(abbe_reflected_light, light) = make(lights[l], 380, 780, &illuminant);
     for (size_t p = 0; p < ABBE_COLOUR_CHECKER_COUNT; p++) {
       abbe_spectrum *patch = NULL;
       double wanted[3], xyz[3][3], matrix[3][9], white[3], seen[3];
@@ -48,7 +50,6 @@ TEST(measured_patches_are_integrals) {
       }
       abbe_spectrum_free(patch);
     }
-    abbe_reflected_light_free(light);
   }
 }
 
@@ -56,7 +57,7 @@ TEST(measured_patches_are_integrals) {
  * one; greys are grey under any light. */
 TEST(rec709_under_d65_is_itself) {
   OWNED(abbe_illuminant, illuminant);
-  abbe_reflected_light *light = make("D65", 380, 780, &illuminant);
+  HELD(abbe_reflected_light, light) = make("D65", 380, 780, &illuminant);
   double xyz[3][3], to_xyz[9], white[3];
   abbe_reflected_light_xyz(light, NULL, xyz);
   abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
@@ -67,18 +68,16 @@ TEST(rec709_under_d65_is_itself) {
   abbe_reflected_light_xyz(light, NULL, xyz);
   abbe_reflected_light_white(light, white);
   for (int k = 0; k < 3; k++) assert_near(xyz[0][k] + xyz[1][k] + xyz[2][k], white[k], 1e-12);
-  abbe_reflected_light_free(light);
 }
 
 /* The matrices of red, green and blue add up to no change at all. */
 TEST(white_changes_no_light) {
   abbe_illuminant illuminant;
-  abbe_reflected_light *light = make("A", 400, 700, &illuminant);
+  HELD(abbe_reflected_light, light) = make("A", 400, 700, &illuminant);
   double matrix[3][9];
   abbe_reflected_light_matrices(light, NULL, matrix);
   for (int i = 0; i < 9; i++)
     assert_near(matrix[0][i] + matrix[1][i] + matrix[2][i], i % 4 == 0, 1e-9);
-  abbe_reflected_light_free(light);
 }
 
 TEST(narrow_lights_and_bad_ranges) {

@@ -13,8 +13,7 @@ static const char *const frames[] = {"animated_0.png", "animated_1.png", "animat
 
 static void write_frame(const char *path, size_t side, float grey) {
   static const char *const names[] = {"R", "G", "B"};
-  OWNED(abbe_image, image);
-  OK(abbe_image_make(side, side, 3, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(side, side, 3, names, &image, &error));
   for (size_t i = 0; i < 3 * side * side; i++) image.data[i] = grey * (float)(i % 7) / 7;
   OK(abbe_png_write(path, &image, 8, &error));
 }
@@ -58,10 +57,8 @@ TEST(chunks_are_by_the_standard) {
 }
 
 TEST(the_first_frame_is_what_others_see) {
-  OWNED(abbe_image, a);
-  OWNED(abbe_image, b);
-  OK(abbe_png_read(MOVES, &a, &error));
-  OK(abbe_png_read(frames[0], &b, &error));
+  MADE(abbe_image, a, abbe_png_read(MOVES, &a, &error));
+  MADE(abbe_image, b, abbe_png_read(frames[0], &b, &error));
   assert_int_equal(a.width, 16);
   assert_memory_equal(a.data, b.data, 3 * 16 * 16 * sizeof(float));
 }
@@ -74,14 +71,13 @@ TEST(what_is_refused) {
           abbe_screen_file_move("none.png", frames, 3, 25, &error));
   OK(abbe_file_write(frames[1], "\x89PNG, they say", 15, &error));
   REFUSED(ABBE_PARSE, "", abbe_screen_file_move("none.png", frames, 3, 25, &error));
-  char *data;
+  FREED char *data = NULL;
   size_t size;
   OK(abbe_file_read(frames[0], 1 << 20, &data, &size, &error));
   for (size_t cut = 0; cut < size; cut += 7) {
     OK(abbe_file_write(frames[1], data, cut, &error));
     REFUSED(ABBE_PARSE, "", abbe_screen_file_move("none.png", frames, 2, 25, &error));
   }
-  free(data);
   assert_int_not_equal(access("none.png", F_OK), 0);
   for (int i = 0; i < 3; i++) unlink(frames[i]);
   unlink(MOVES);

@@ -37,9 +37,8 @@ TEST(a_point_becomes_the_spread) {
   enum { SIDE = 255, MIDDLE = SIDE / 2 };
   static const double highs[] = {2, 20};
   for (size_t k = 0; k < 2; k++) {
-    OWNED(abbe_image, image);
     const double deg = highs[k] / SIDE;
-    make(SIDE, SIDE, &image);
+    FILLED(abbe_image, image, make(SIDE, SIDE, &image));
     image.data[3 * (MIDDLE * SIDE + MIDDLE) + 1] = 1000;
     OK(abbe_glare_add(&image, highs[k], &error));
     assert_near(total(&image, 1), 1000, 1e-3);
@@ -66,8 +65,7 @@ TEST(a_point_becomes_the_spread) {
 }
 
 TEST(no_light_is_lost) {
-  OWNED(abbe_image, image);
-  make(37, 21, &image);
+  FILLED(abbe_image, image, make(37, 21, &image));
   for (size_t i = 0; i < 37 * 21 * 3; i++) image.data[i] = i % 3 == 2 ? 0.7f : (float)(i * i % 97);
   const double before[] = {total(&image, 0), total(&image, 1), total(&image, 2)};
   OK(abbe_glare_add(&image, 10, &error));
@@ -77,8 +75,7 @@ TEST(no_light_is_lost) {
 }
 
 TEST(what_is_not_finite_does_not_spread) {
-  OWNED(abbe_image, image);
-  make(8, 8, &image);
+  FILLED(abbe_image, image, make(8, 8, &image));
   image.data[0] = NAN;
   image.data[4] = INFINITY;
   OK(abbe_glare_add(&image, 10, &error));

@@ -37,10 +37,9 @@ TEST(nodes_are_the_views_own) {
   enum { COUNT = sizeof nodes / sizeof *nodes };
   for (int e = 0; e < 2; e++) {
     abbe_display *display = make_display("Looking");
-    abbe_image shown, looked_up;
     abbe_lut_error off;
-    OK(abbe_image_make(COUNT, 1, 3, names, &shown, &error));
-    OK(abbe_image_make(COUNT, 1, 3, names, &looked_up, &error));
+    MADE(abbe_image, shown, abbe_image_make(COUNT, 1, 3, names, &shown, &error));
+    MADE(abbe_image, looked_up, abbe_image_make(COUNT, 1, 3, names, &looked_up, &error));
     for (int i = 0; i < COUNT; i++) {
       node_light(nodes[i], 17, shown.data + 3 * i);
       node_light(nodes[i], 17, looked_up.data + 3 * i);
@@ -52,8 +51,6 @@ TEST(nodes_are_the_views_own) {
     /* Between the shaper's 65,536 entries the darkest nodes are cut by a straight line. */
     for (int i = 0; i < 3 * COUNT; i++)
       assert_float_equal(looked_up.data[i], shown.data[i], e == 0 ? 2e-4 : 2e-6);
-    abbe_image_free(&looked_up);
-    abbe_image_free(&shown);
     abbe_display_free(display);
     unlink(path_of(endings[e]));
   }
@@ -79,20 +76,15 @@ TEST(a_file_says_what_it_is_for) {
   abbe_display *display = make_display("Plain");
   for (int e = 0; e < 2; e++) {
     abbe_lut_error off;
-    char *text = NULL;
+    FREED char *text = NULL;
     size_t size;
-    const abbe_lut_desc desc = {.display = display,
-                                .input = "ACEScg",
-                                .output = "sRGB / Plain",
-                                .nodes = 2,
-                                .low = -3,
-                                .high = 2};
+    const abbe_lut_desc desc = FIELDS(.display = display, .input = "ACEScg",
+                                      .output = "sRGB / Plain", .nodes = 2, .low = -3, .high = 2);
     OK(abbe_lut_write(&desc, path_of(endings[e]), &off, &error));
     OK(abbe_file_read(path_of(endings[e]), 1 << 24, &text, &size, &error));
     assert_non_null(strstr(text, "ACEScg"));
     assert_non_null(strstr(text, "sRGB / Plain"));
     assert_non_null(strstr(text, "-3 to 2 stops from 0.18"));
-    free(text);
     unlink(path_of(endings[e]));
   }
   abbe_display_free(display);
@@ -110,12 +102,9 @@ TEST(what_is_no_table_is_refused) {
                {3, NAN, 1, "a.cube", "do not rise"},      {3, -1, 1, "a.png", ".cube or .clf"},
                {3, -1, 1, "/nowhere/a.clf", "/nowhere/a"}};
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-    const abbe_lut_desc desc = {.display = display,
-                                .input = "a",
-                                .output = "b",
-                                .nodes = wrong[i].nodes,
-                                .low = wrong[i].low,
-                                .high = wrong[i].high};
+    const abbe_lut_desc desc =
+        FIELDS(.display = display, .input = "a", .output = "b", .nodes = wrong[i].nodes,
+               .low = wrong[i].low, .high = wrong[i].high);
     REFUSED(i == 6 ? ABBE_IO : ABBE_INVALID_ARGUMENT, wrong[i].words,
             abbe_lut_write(&desc, wrong[i].path, &off, &error));
   }

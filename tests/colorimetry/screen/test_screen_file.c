@@ -20,9 +20,7 @@ static void setup(void) {
 }
 
 static void teardown(void) {
-  char command[80];
-  snprintf(command, sizeof command, "rm -r %s", folder);
-  assert_int_equal(system(command), 0);
+  assert_int_equal(system(printed("rm -r %s", folder)), 0);
 }
 
 enum { W = 97, H = 61 };
@@ -60,17 +58,14 @@ static decoded decode(const char *file, int frame, unsigned char *rgb) {
       "print(i.width, i.height, f, len(i.info.get('icc_profile') or b''),\n"
       "      i.info.get('duration', 0), sum(a) / len(a))\n"
       "open(sys.argv[1] + '.rgb', 'wb').write(c.convert('RGB').tobytes())\n";
-  char command[1200];
   decoded d = {0};
-  snprintf(command, sizeof command, "/usr/bin/python3 -c \"%s\" %s %d", script, file, frame);
-  FILE *from = popen(command, "r");
+  FILE *from = popen(printed("/usr/bin/python3 -c \"%s\" %s %d", script, file, frame), "r");
   assert_int_equal(fscanf(from, "%d %d %d %d %lf %lf", &d.width, &d.height, &d.frames, &d.profile,
                           &d.ms, &d.alpha),
                    6);
   assert_int_equal(pclose(from), 0);
   assert_true(d.width == W && d.height == H);
-  snprintf(command, sizeof command, "%s.rgb", file);
-  from = fopen(command, "rb");
+  from = fopen(printed("%s.rgb", file), "rb");
   assert_int_equal(fread(rgb, 3, W * H, from), W * H);
   fclose(from);
   return d;
@@ -99,10 +94,9 @@ TEST(kinds_hold_pixels_and_their_colour) {
   FREED unsigned char *rgb = malloc(W * H * 3);
   for (size_t i = 0; i < sizeof of / sizeof *of; i++)
     for (int p3 = 0; p3 < 2; p3++) {
-      OWNED(abbe_image, image);
       double off, bias;
       if (abbe_screen_kind_of(of[i].file)->library != NULL) continue;
-      paint(&image);
+      FILLED(abbe_image, image, paint(&image));
       (p3 ? abbe_rgb_encoding_display_p3 : abbe_rgb_encoding_srgb)(image.xy, image.curve);
       if (strcmp(of[i].file, "a.gif") == 0 && p3) {
         REFUSED(ABBE_INVALID_ARGUMENT, "a GIF is sRGB",
@@ -120,9 +114,8 @@ TEST(kinds_hold_pixels_and_their_colour) {
 
 TEST(a_gif_of_few_colours_is_exact) {
   FREED unsigned char *rgb = malloc(W * H * 3);
-  OWNED(abbe_image, image);
   double off, bias;
-  paint(&image);
+  FILLED(abbe_image, image, paint(&image));
   for (size_t i = 0; i < W * H * 3; i++)
     image.data[i] = (float)((i / 3 % W / 7 * 16 + i % 3 * 5) % 256) / 255;
   OK(abbe_screen_file_write(name("few.gif"), &image, 0, &error));
@@ -134,11 +127,9 @@ TEST(a_gif_of_few_colours_is_exact) {
 TEST(alpha_stays) {
   static const char *const alpha[] = {"A"};
   FREED unsigned char *rgb = malloc(W * H * 3);
-  OWNED(abbe_image, image);
-  OWNED(abbe_image, own);
   if (abbe_screen_kind_of("a.webp")->library != NULL) return;
-  paint(&image);
-  OK(abbe_image_make(W, H, 1, alpha, &own, &error));
+  FILLED(abbe_image, image, paint(&image));
+  MADE(abbe_image, own, abbe_image_make(W, H, 1, alpha, &own, &error));
   for (size_t i = 0; i < W * H; i++) own.data[i] = i % 2 ? 0.2f : 1;
   OK(abbe_image_append(&image, &own, &error));
   OK(abbe_screen_file_write(name("alpha.webp"), &image, 0, &error));
@@ -153,8 +144,7 @@ TEST(frames_move_at_their_pace) {
   FREED unsigned char *rgb = malloc(W * H * 3);
   char frame[3][64];
   const char *const frames[] = {frame[0], frame[1], frame[2]};
-  OWNED(abbe_image, image);
-  paint(&image);
+  FILLED(abbe_image, image, paint(&image));
   for (int i = 0; i < 3; i++) {
     snprintf(frame[i], sizeof frame[i], "%s/turn-%d.png", folder, i);
     for (size_t p = 0; p < W * H; p++) image.data[3 * p + 2] = 0.3f * (float)i;
@@ -193,8 +183,7 @@ TEST(what_a_kind_does_not_hold_is_said) {
       REFUSED(ABBE_INVALID_ARGUMENT, of[i].words,
               abbe_screen_file_check(of[i].file, &of[i].needs, &error));
   }
-  OWNED(abbe_image, image);
-  paint(&image);
+  FILLED(abbe_image, image, paint(&image));
   image.transfer = 16;
   REFUSED(ABBE_INVALID_ARGUMENT, "PQ", abbe_screen_file_write(name("a.gif"), &image, 0, &error));
   assert_null(abbe_screen_kind_of("a.exr"));
@@ -255,9 +244,8 @@ TEST(files_hold_pixels_and_their_colour) {
       {{0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.3290}, {0}, 0, 12, {12, 13, 1}}};
   FREED uint16_t *pixel = malloc(W * H * 3 * sizeof *pixel);
   for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
-    OWNED(abbe_image, image);
     double xy[8];
-    paint(&image);
+    FILLED(abbe_image, image, paint(&image));
     memcpy(image.xy, of[i].xy, sizeof image.xy);
     image.transfer = of[i].transfer;
     if (of[i].transfer == 0) abbe_rgb_encoding_srgb(xy, image.curve);
@@ -277,11 +265,10 @@ TEST(files_hold_pixels_and_their_colour) {
 TEST(other_encodings_have_a_profile) {
   static const double power[5] = {2.4, 1, 0, 0, 0};
   FREED uint16_t *pixel = malloc(W * H * 3 * sizeof *pixel);
-  OWNED(abbe_image, image);
   double curve[5];
   FREED void *icc = NULL;
   size_t size = 0;
-  paint(&image);
+  FILLED(abbe_image, image, paint(&image));
   abbe_rgb_encoding_srgb(image.xy, curve);
   memcpy(image.curve, power, sizeof power);
   OK(abbe_screen_file_write(name("a.avif"), &image, 10, &error));
@@ -294,8 +281,7 @@ TEST(other_encodings_have_a_profile) {
 }
 
 TEST(what_cannot_be_written_is_said) {
-  OWNED(abbe_image, image);
-  paint(&image);
+  FILLED(abbe_image, image, paint(&image));
   REFUSED(ABBE_INVALID_ARGUMENT, "10 or 12",
           abbe_screen_file_write(name("a.avif"), &image, 8, &error));
   image.transfer = 16; /* of primaries that no code names */

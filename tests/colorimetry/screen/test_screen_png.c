@@ -16,20 +16,15 @@ static abbe_screen_png_notes notes;
 /* A pixel of `rgb` in the space (ABBE_RGB_SPACE_COUNT: none is stated), as that PNG shows it. */
 static void show(const char *const *channel, size_t channels, const float *value,
                  const char *attribute, const double *xy, const char *layer, float out[3]) {
-  const abbe_screen_png_desc desc = {.display = {.view = "Plain", .source_space = source},
-                                     .layer = layer,
-                                     .bits = 16,
-                                     .notes = &notes};
-  abbe_image image = {0}, shown = {0};
-  OK(abbe_image_make(1, 1, channels, channel, &image, &error));
+  const abbe_screen_png_desc desc = FIELDS(.display = {.view = "Plain", .source_space = source},
+                                           .layer = layer, .bits = 16, .notes = &notes);
+  MADE(abbe_image, image, abbe_image_make(1, 1, channels, channel, &image, &error));
   for (size_t i = 0; i < channels; i++) image.data[i] = value[i];
   if (xy != NULL) memcpy(image.xy, xy, sizeof image.xy);
   if (attribute != NULL) abbe_image_set_attribute(&image, "abbe:space", attribute, NULL);
   OK(abbe_screen_png_write(path, &image, &desc, &error));
-  OK(abbe_png_read(path, &shown, &error));
+  MADE(abbe_image, shown, abbe_png_read(path, &shown, &error));
   for (size_t k = 0; k < 3; k++) out[k] = shown.data[k];
-  abbe_image_free(&shown);
-  abbe_image_free(&image);
   unlink(path);
 }
 
@@ -116,8 +111,7 @@ TEST(stops_are_those_of_finite_light) {
   static const float value[][3] = {
       {INFINITY, INFINITY, INFINITY}, {NAN, NAN, NAN}, {3.2f, 1, 0}, {0.1f, 0.2f, 3.2f}};
   const abbe_screen_png_desc desc = {.bits = 8, .notes = &notes};
-  OWNED(abbe_image, image) = {0};
-  OK(abbe_image_make(4, 1, 3, rgb, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(4, 1, 3, rgb, &image, &error));
   memcpy(image.data, value, sizeof value);
   OK(abbe_screen_png_write(path, &image, &desc, &error));
   assert_near(notes.stops, -2, 1e-6);
@@ -169,17 +163,15 @@ TEST(alpha_is_straight) {
   static const char *const channels[] = {"R", "G", "B", "A"};
   static const float pixels[] = {0.3f, 0.3f, 0.3f, 0.5f, 0, 0, 0, 0}, whole[] = {0.6f, 0.6f, 0.6f};
   const abbe_screen_png_desc desc = {.display = {.view = "Plain"}, .alpha = true, .bits = 8};
-  OWNED(abbe_image, image) = {0};
   float shown[3];
-  unsigned char *data;
+  FREED unsigned char *data = NULL;
   size_t size;
-  OK(abbe_image_make(2, 1, 4, channels, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(2, 1, 4, channels, &image, &error));
   memcpy(image.data, pixels, sizeof pixels);
   abbe_image_set_attribute(&image, "abbe:space", "rec709", NULL);
   OK(abbe_screen_png_write(path, &image, &desc, &error));
   OK(abbe_file_read(path, 1 << 16, (char **)&data, &size, &error));
   assert_int_equal(data[25], 6); /* IHDR's colour type: RGB and alpha */
-  free(data);
   png_image png = {.version = PNG_IMAGE_VERSION};
   unsigned char rgba[8];
   assert_true(png_image_begin_read_from_file(&png, path));
@@ -197,8 +189,7 @@ TEST(alpha_is_straight) {
 /* What is not covered is not black: a quarter of the picture of a light of 3.2 is as all of it. */
 TEST(stops_are_those_of_what_is_covered) {
   static const char *const channels[] = {"R", "G", "B", "A"};
-  OWNED(abbe_image, image) = {0};
-  OK(abbe_image_make(40, 1, 4, channels, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(40, 1, 4, channels, &image, &error));
   abbe_image_set_attribute(&image, "abbe:space", "rec709", NULL);
   for (size_t i = 0; i < 4 * 3; i++) image.data[i] = i % 4 == 3 ? 0.5f : 1.6f;
   for (int alpha = 0; alpha < 2; alpha++) {
@@ -212,8 +203,7 @@ TEST(stops_are_those_of_what_is_covered) {
 TEST(what_cannot_be_shown_is_refused) {
   static const char *const names[] = {"U", "V", "R"}, *const rgb[] = {"R", "G", "B"};
   const abbe_screen_png_desc desc = {.name = "it.exr"};
-  abbe_image image = {0};
-  OK(abbe_image_make(1, 1, 3, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(1, 1, 3, names, &image, &error));
   REFUSED(ABBE_NOT_FOUND, "it.exr: it has no channels R, G, B",
           abbe_screen_png_write(path, &image, &desc, &error));
   assert_contains(last_error.text, "it has: U, V, R");
@@ -224,6 +214,5 @@ TEST(what_cannot_be_shown_is_refused) {
   REFUSED(ABBE_INVALID_ARGUMENT, "it.exr: ", abbe_screen_png_write(path, &image, &desc, &error));
   abbe_image_set_attribute(&image, "abbe:space", "p3", NULL);
   REFUSED(ABBE_COLOUR, "abbe:space is 'p3'", abbe_screen_png_write(path, &image, &desc, &error));
-  abbe_image_free(&image);
   assert_int_equal(access(path, F_OK), -1);
 }

@@ -16,11 +16,10 @@ static void make(abbe_image *image) {
 
 TEST(a_pixel_and_a_region) {
   const abbe_spectral_view view = {0};
-  OWNED(abbe_image, image);
-  abbe_pixel_probe p;
-  make(&image);
-  OK(abbe_pixel_probe_make(&image, NULL, "it", (abbe_image_window){11, 21, 11, 21}, &view, &p,
-                           &error));
+  FILLED(abbe_image, image, make(&image));
+  MADE(abbe_pixel_probe, p,
+       abbe_pixel_probe_make(&image, NULL, "it", (abbe_image_window){11, 21, 11, 21}, &view, &p,
+                             &error));
   assert_int_equal(p.pixels, 1);
   for (size_t c = 0; c < CHANNELS; c++) assert_near(p.mean[c], 400 + (double)c, 1e-12);
   assert_near(p.error[0], 403, 1e-12);
@@ -34,29 +33,25 @@ TEST(a_pixel_and_a_region) {
   assert_int_equal(p.pixels, 4);
   assert_near(p.mean[1], (1 + 101 + 301 + 401) / 4.0, 1e-12);
   assert_near(p.error[0], sqrt(3 * 3 + 103 * 103 + 303 * 303 + 403 * 403) / 4, 1e-9);
-  abbe_pixel_probe_free(&p);
 }
 
 TEST(colour_is_xyz) {
   const abbe_spectral_view view = {0};
-  OWNED(abbe_image, image);
-  abbe_pixel_probe p;
-  make(&image);
+  FILLED(abbe_image, image, make(&image));
   for (size_t c = 0; c < 3; c++) image.data[c] = 1;
-  OK(abbe_pixel_probe_make(&image, NULL, "it", (abbe_image_window){10, 20, 10, 20}, &view, &p,
-                           &error));
+  MADE(abbe_pixel_probe, p,
+       abbe_pixel_probe_make(&image, NULL, "it", (abbe_image_window){10, 20, 10, 20}, &view, &p,
+                             &error));
   assert_near(p.xyz[0], 0.3127 / 0.3290, 1e-9);
   assert_near(p.xyz[1], 1, 1e-9);
-  abbe_pixel_probe_free(&p);
 }
 
 TEST(refusals) {
   const abbe_spectral_view view = {0};
   static const abbe_image_window outside[] = {
       {9, 20, 10, 20}, {10, 20, 13, 20}, {10, 22, 10, 22}, {11, 20, 10, 20}};
-  OWNED(abbe_image, image);
   abbe_pixel_probe p;
-  make(&image);
+  FILLED(abbe_image, image, make(&image));
   for (int i = 0; i < 4; i++) {
     REFUSED(ABBE_INVALID_ARGUMENT, "(10, 20) to (12, 21)",
             abbe_pixel_probe_make(&image, NULL, "it.exr", outside[i], &view, &p, &error));

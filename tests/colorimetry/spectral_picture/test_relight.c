@@ -26,8 +26,8 @@ static double middle(int band) {
  * nm.
  */
 TEST(equal_energy_of_each_observer) {
-  abbe_image image, xyz;
-  make("S0.", &image);
+  abbe_image xyz;
+  FILLED(abbe_image, image, make("S0.", &image));
   for (size_t i = 0; i < 2 * BANDS; i++) image.data[i] = 0.5f;
   for (int observer = 0; observer < ABBE_OBSERVER_COUNT; observer++) {
     abbe_relight_desc desc = {
@@ -43,7 +43,6 @@ TEST(equal_energy_of_each_observer) {
                         abbe_observer_text((abbe_observer)observer));
     abbe_image_free(&xyz);
   }
-  abbe_image_free(&image);
 }
 
 /* A reflectance that falls from 0.9 to 0.1: under A as its direct integral in steps of 0.1 nm. */
@@ -67,7 +66,8 @@ static void integrate(const abbe_illuminant *light, abbe_observer observer, doub
 TEST(a_reflectance_under_another_light) {
   const abbe_illuminant a = {.kind = ABBE_ILLUMINANT_A}, d65 = {0};
   const abbe_illuminant *const lights[2] = {&a, &d65};
-  abbe_image reflected, emitted, out;
+  OWNED(abbe_image, reflected) = {0}, emitted = {0};
+  abbe_image out;
   make("T.", &reflected);
   make("S0.", &emitted);
   for (int b = 0; b < BANDS; b++) {
@@ -91,8 +91,6 @@ TEST(a_reflectance_under_another_light) {
       for (int k = 0; k < 3; k++) assert_near((double)out.data[k], expected[k], 2e-4);
       abbe_image_free(&out);
     }
-  abbe_image_free(&reflected);
-  abbe_image_free(&emitted);
 }
 
 /* 683 lm/W and the integral of ybar: an even radiance of 1 mW/(m2 sr nm), and its thousandth of a
@@ -106,12 +104,10 @@ TEST(units) {
                {"W.m^-2", "illuminance, lx", 1e-3f}};
   const abbe_relight_desc desc = {.space = ABBE_RGB_SPACE_XYZ};
   for (int i = 0; i < 3; i++) {
-    OWNED(abbe_image, image);
-    OWNED(abbe_image, xyz);
-    make("S0.", &image);
+    FILLED(abbe_image, image, make("S0.", &image));
     for (size_t b = 0; b < 2 * BANDS; b++) image.data[b] = cases[i].value;
     abbe_image_set_attribute(&image, "emissiveUnits", cases[i].unit, NULL);
-    OK(abbe_relight_make(&image, "it", &desc, &xyz, &error));
+    MADE(abbe_image, xyz, abbe_relight_make(&image, "it", &desc, &xyz, &error));
     assert_near((double)xyz.data[1], 0.683 * 106.856, 0.03); /* the CIE's sum over 360 to 830 nm */
     assert_string_equal(abbe_image_attribute_text(&xyz, "abbe:unit"), cases[i].says);
   }
@@ -120,14 +116,12 @@ TEST(units) {
 /* An infinite band is as bright as the brightest half, or as the brightest band that there is, and
  * does not take the others away; what is not a number stays so. */
 TEST(infinite_bands) {
-  OWNED(abbe_image, image);
-  OWNED(abbe_image, xyz);
   abbe_image_odd odd;
   const abbe_relight_desc desc = {.space = ABBE_RGB_SPACE_ACESCG, .odd = &odd};
   double bright[3];
-  make("S0.", &image);
+  FILLED(abbe_image, image, make("S0.", &image));
   image.data[40] = 65504;
-  OK(abbe_relight_make(&image, "it", &desc, &xyz, &error));
+  MADE(abbe_image, xyz, abbe_relight_make(&image, "it", &desc, &xyz, &error));
   for (int k = 0; k < 3; k++) bright[k] = (double)xyz.data[k];
   abbe_image_free(&xyz);
   image.data[40] = INFINITY;
@@ -144,15 +138,14 @@ TEST(infinite_bands) {
  * made with that one, they have the same colour. */
 TEST(bands_are_kept) {
   const abbe_illuminant a = {.kind = ABBE_ILLUMINANT_A}, d65 = {0};
-  abbe_image lamp, out, again;
-  make("S0.", &lamp);
+  FILLED(abbe_image, lamp, make("S0.", &lamp));
   for (int b = 0; b < BANDS; b++)
     lamp.data[b] =
         (float)(abbe_weights_band_power(&d65, 380, 780, middle(b) - 2.5, middle(b) + 2.5) / 5);
   lamp.display_window = lamp.data_window = (abbe_image_window){3, 4, 4, 4};
   const abbe_relight_desc desc = {
       .view = {.from = &d65, .to = &a}, .space = ABBE_RGB_SPACE_XYZ, .bands = true};
-  OK(abbe_relight_make(&lamp, "it", &desc, &out, &error));
+  MADE(abbe_image, out, abbe_relight_make(&lamp, "it", &desc, &out, &error));
   assert_int_equal(out.channels, 3 + BANDS);
   assert_string_equal(out.channel[3], "S0.382,500000nm");
   assert_string_equal(abbe_image_attribute_text(&out, "spectralLayoutVersion"), "1.0");
@@ -163,19 +156,15 @@ TEST(bands_are_kept) {
     assert_near((double)out.data[3 + b], expected, 1e-6 * expected);
   }
   const abbe_relight_desc as_it_is = {.view.from = &a, .space = ABBE_RGB_SPACE_XYZ};
-  OK(abbe_relight_make(&out, "it", &as_it_is, &again, &error));
+  MADE(abbe_image, again, abbe_relight_make(&out, "it", &as_it_is, &again, &error));
   for (int k = 0; k < 3; k++) assert_near((double)again.data[k], (double)out.data[k], 1e-6);
-  abbe_image_free(&again);
-  abbe_image_free(&out);
-  abbe_image_free(&lamp);
 }
 
 TEST(what_is_refused_and_what_is_needed) {
   static const char *const rgb[] = {"R", "G", "B", "left.S0.500nm", "left.S0.600nm"};
   const abbe_relight_desc none = {0}, left = {.layer = "left"};
-  OWNED(abbe_image, image);
   OWNED(abbe_image, out);
-  OK(abbe_image_make(1, 1, 5, rgb, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(1, 1, 5, rgb, &image, &error));
   REFUSED(ABBE_NOT_FOUND, "it.exr: it has no bands",
           abbe_relight_make(&image, "it.exr", &none, &out, &error));
   assert_false(abbe_relight_is_needed(&image, NULL));

@@ -39,9 +39,8 @@ static void make(const char *const *names, size_t count, abbe_image *out) {
 
 TEST(bands_meet_midway) {
   static const char *const names[] = {"S0.600nm", "R", "stderr.S0.500nm", "S0.500nm", "S0.520nm"};
-  OWNED(abbe_image, image);
   abbe_spectral_channels c;
-  make(names, 5, &image);
+  FILLED(abbe_image, image, make(names, 5, &image));
   OK(abbe_spectral_channels_find(&image, NULL, "it", &c, &error));
   assert_int_equal(c.kind, ABBE_SPECTRAL_EMISSIVE);
   assert_int_equal(c.count, 3);
@@ -59,9 +58,8 @@ TEST(bands_meet_midway) {
 
 TEST(layers_and_reflectances) {
   static const char *const names[] = {"left.T.500nm", "left.T.600nm", "T.400nm"};
-  OWNED(abbe_image, image);
   abbe_spectral_channels c;
-  make(names, 3, &image);
+  FILLED(abbe_image, image, make(names, 3, &image));
   OK(abbe_spectral_channels_find(&image, "left", "it", &c, &error));
   assert_int_equal(c.kind, ABBE_SPECTRAL_REFLECTIVE);
   assert_int_equal(c.count, 2);
@@ -76,9 +74,8 @@ TEST(layers_and_reflectances) {
 
 TEST(twice_the_same) {
   static const char *const names[] = {"S0.500nm", "S0.0,5um"};
-  OWNED(abbe_image, image);
   abbe_spectral_channels c;
-  make(names, 2, &image);
+  FILLED(abbe_image, image, make(names, 2, &image));
   REFUSED(ABBE_INVALID_ARGUMENT, "it.exr",
           abbe_spectral_channels_find(&image, NULL, "it.exr", &c, &error));
   assert_contains(last_error.text, "one wavelength");
@@ -89,9 +86,8 @@ TEST(what_is_not_read) {
       "S0.500nm", "S0.600nm",  "S1.500nm", "S3.600nm", "T.400nm.500nm",
       "T.500nm",  "w420nm",    "w720nm",   "R",        "a.S2.500nm",
       "S4.500nm", "T.x.500nm", "nm",       "m",        "1"};
-  OWNED(abbe_image, image);
   abbe_spectral_unread unread;
-  make(names, 15, &image);
+  FILLED(abbe_image, image, make(names, 15, &image));
   abbe_spectral_channels_find_unread(&image, NULL, &unread);
   static const size_t count[ABBE_SPECTRAL_UNREAD_COUNT] = {2, 1, 2};
   static const char *const first[] = {"S1.500nm", "T.400nm.500nm", "w420nm"};
@@ -105,9 +101,8 @@ TEST(what_is_not_read) {
 
 TEST(the_unit) {
   static const char *const names[] = {"S0.500nm", "S0.600nm"};
-  OWNED(abbe_image, image);
   abbe_spectral_channels c;
-  make(names, 2, &image);
+  FILLED(abbe_image, image, make(names, 2, &image));
   OK(abbe_spectral_channels_find(&image, NULL, "it", &c, &error));
   assert_true(c.unit.factor == 1 && c.unit.quantity == ABBE_SPECTRAL_RADIANCE);
   abbe_spectral_channels_free(&c);

@@ -32,9 +32,8 @@ TEST(whites_of_illuminants) {
                {ABBE_OBSERVER_CIE_1964, ABBE_ILLUMINANT_D65, {0.31382, 0.33100}},
                {ABBE_OBSERVER_CIE_1964, ABBE_ILLUMINANT_A, {0.45117, 0.40594}},
                {ABBE_OBSERVER_CIE_1964, ABBE_ILLUMINANT_D50, {0.34773, 0.35952}}};
-  OWNED(abbe_image, image);
   OWNED(abbe_spectral_channels, c);
-  make("T.", &image, &c);
+  FILLED(abbe_image, image, make("T.", &image, &c));
   for (size_t i = 0; i < sizeof white / sizeof *white; i++) {
     const abbe_illuminant light = {.kind = white[i].kind};
     const abbe_spectral_view view = {.observer = white[i].observer, .to = &light};
@@ -55,9 +54,8 @@ TEST(whites_of_illuminants) {
  * weight that a picture is made with. Under another illuminant it is that one's white. */
 TEST(a_lamp_in_bands) {
   const abbe_illuminant d65 = {0}, a = {.kind = ABBE_ILLUMINANT_A};
-  OWNED(abbe_image, image);
   OWNED(abbe_spectral_channels, c);
-  make("S0.", &image, &c);
+  FILLED(abbe_image, image, make("S0.", &image, &c));
   const abbe_spectral_view as_it_is = {.from = &d65}, under_a = {.from = &d65, .to = &a};
   double weight[BANDS][3], other[BANDS][3], sum[3] = {0}, white[3];
   OK(abbe_spectral_colour_weights(&c, &as_it_is, "it", weight, &error));
@@ -80,11 +78,9 @@ TEST(a_lamp_in_bands) {
 TEST(absolute_light) {
   static const char *const names[] = {"S0.554nm", "S0.555nm", "S0.556nm"};
   const abbe_spectral_view view = {0};
-  OWNED(abbe_image, image);
-  OWNED(abbe_spectral_channels, c);
   double weight[3][3];
-  OK(abbe_image_make(1, 1, 3, names, &image, &error));
-  OK(abbe_spectral_channels_find(&image, NULL, "it", &c, &error));
+  MADE(abbe_image, image, abbe_image_make(1, 1, 3, names, &image, &error));
+  MADE(abbe_spectral_channels, c, abbe_spectral_channels_find(&image, NULL, "it", &c, &error));
   OK(abbe_spectral_colour_weights(&c, &view, "it", weight, &error));
   assert_near(weight[1][1], 683, 0.1);
 }

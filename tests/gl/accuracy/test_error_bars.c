@@ -11,11 +11,9 @@ static const abbe_render_desc coarse_frame = {
 static void make_bars(const abbe_scene *scene, const abbe_render_desc *desc,
                       const abbe_error_bars_desc *bars_desc, abbe_image *picture,
                       abbe_error_bars *bars) {
-  abbe_renderer *renderer = make_renderer(scene, desc);
-  draw_frame(renderer);
-  if (picture != NULL) read_picture(renderer, false, picture);
+  HELD(abbe_renderer, renderer) = drawn_renderer(scene, desc);
+  if (picture != NULL) *picture = picture_of(renderer);
   OK(abbe_error_bars_make(context, scene, renderer, bars_desc, bars, &error));
-  abbe_renderer_free(renderer);
 }
 
 GROUP(make_context, free_context);
@@ -25,10 +23,9 @@ GROUP(make_context, free_context);
  * or a third where the picture takes more rays at edges. */
 TEST(variants_spread_evenly) {
   static const size_t counts[] = {2, 4, 7, ABBE_ERROR_BARS_MAX_VARIANTS};
-  OWNED(abbe_scene, scene) = {0};
   abbe_map_layout map, layout;
-  load_shipped("sphere", &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
+  OWNED(abbe_scene, scene) = shipped_scene("sphere");
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &small_frame);
   abbe_render_desc of = abbe_renderer_plan(renderer)->desc, *desc = &of;
   abbe_renderer_map_layout(renderer, 0, &map);
   for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
@@ -59,23 +56,20 @@ TEST(variants_spread_evenly) {
     assert_near(moved[0], 0, 1e-9);
     assert_near(moved[1], 0, 1e-9);
   }
-  abbe_renderer_free(renderer);
 }
 
 /* A grid that lies elsewhere is as good a grid: it meets the same light. */
 TEST(shifted_grids_carry_the_same_light) {
-  OWNED(abbe_scene, scene) = {0};
-  load_shipped("sphere", &scene);
+  OWNED(abbe_scene, scene) = shipped_scene("sphere");
   double least = INFINITY, most = 0;
   for (int i = 0; i < 3; i++) {
     abbe_render_desc desc = small_frame;
     desc.photon_shift[0] = 0.4 * (i - 1);
     desc.photon_shift[1] = -0.3 * (i - 1);
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
     double reached = draw_frame(renderer).energy.reached;
     least = fmin(least, reached);
     most = fmax(most, reached);
-    abbe_renderer_free(renderer);
   }
   /* The outline cuts some 200 of the 3200 cells at random: sqrt(200) / 3200 is half a per cent. */
   assert_true(most / least > 1);
@@ -83,27 +77,21 @@ TEST(shifted_grids_carry_the_same_light) {
 }
 
 static double true_error(const char *name, const abbe_image *picture) {
-  char path[512];
-  OWNED(abbe_field, reference) = {0};
-  OWNED(abbe_field, test) = {0};
-  OWNED(abbe_comparison, comparison) = {0};
-  snprintf(path, sizeof path, ABBE_SOURCE_DIR "/validation/references/%s.exr", name);
-  OK(abbe_field_load(path, &reference, &error));
-  OK(abbe_field_make(picture, "picture", &test, &error));
-  OK(abbe_compare(&reference, &test, NULL, &comparison, &error));
-  double found = comparison.whole.metric[ABBE_COMPARE_RELATIVE_RMSE].value;
-  return found;
+  MADE(abbe_field, reference,
+       abbe_field_load(printed(ABBE_SOURCE_DIR "/validation/references/%s.exr", name), &reference,
+                       &error));
+  MADE(abbe_field, test, abbe_field_make(picture, "picture", &test, &error));
+  MADE(abbe_comparison, comparison, abbe_compare(&reference, &test, NULL, &comparison, &error));
+  return comparison.whole.metric[ABBE_COMPARE_RELATIVE_RMSE].value;
 }
 
 /* The references are of full physics; with so few photons what the model lacks is a small part. */
 TEST(errors_are_near_the_true_ones) {
   static const char *const names[] = {"prism", "gem"};
   for (int i = 0; i < 2; i++) {
-    OWNED(abbe_scene, scene) = {0};
-    OWNED(abbe_image, picture) = {0};
-    abbe_error_bars bars = {0};
-    load_shipped(names[i], &scene);
-    make_bars(&scene, &coarse_frame, NULL, &picture, &bars);
+    OWNED(abbe_error_bars, bars) = {0};
+    OWNED(abbe_scene, scene) = shipped_scene(names[i]);
+    FILLED(abbe_image, picture, make_bars(&scene, &coarse_frame, NULL, &picture, &bars));
     double truth = true_error(names[i], &picture), ratio = bars.whole.relative_rmse / truth;
     if (!(ratio > 0.5 && ratio < 2)) print_error("%s: %g of %g\n", names[i], ratio, truth);
     /* Where docs/trade-measured.md finds most scenes and settings. */
@@ -114,42 +102,34 @@ TEST(errors_are_near_the_true_ones) {
     assert_int_equal(bars.variants, 4);
     assert_int_equal(bars.frames, 5);
     assert_finite(&bars.error);
-    abbe_error_bars_free(&bars);
   }
 }
 
 /* Nothing that the shipped scenes have: a turned brick under the sun. Its truth is a picture of the
  * same model in steps a quarter as wide. */
 TEST(errors_are_near_those_of_a_scene_that_is_not_shipped) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_image, picture) = {0};
-  OWNED(abbe_image, fine) = {0};
-  abbe_error_bars bars = {0};
+  OWNED(abbe_error_bars, bars) = {0};
   abbe_render_desc desc = {
       .width = 64, .height = 64, .photons = 64, .map_size = 128, .wavelengths = 7};
-  load_text("materials: default\nambient: 0.2\n"
-            "camera: {eye: [0.1, -0.6, 0.45], target: [0, 0, 0.02], up: [0, 0, 1], fov: 20}\n"
-            "lights:\n"
-            "- {name: sun, kind: directional, direction: [0.3, 0.2, -1], irradiance: 5}\n"
-            "objects:\n"
-            "- {name: brick, shape: box, size: [0.06, 0.04, 0.03], material: n-sf11,\n"
-            "   transform: [{rotate: {axis: [1, 1, 0.3], angle: 33}}, {translate: [0, 0, 0.07]}]}\n"
-            "- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.7}\n",
-            &scene);
-  make_bars(&scene, &desc, NULL, &picture, &bars);
+  OWNED(abbe_scene, scene) = scene_of(
+      "materials: default\nambient: 0.2\n"
+      "camera: {eye: [0.1, -0.6, 0.45], target: [0, 0, 0.02], up: [0, 0, 1], fov: 20}\n"
+      "lights:\n"
+      "- {name: sun, kind: directional, direction: [0.3, 0.2, -1], irradiance: 5}\n"
+      "objects:\n"
+      "- {name: brick, shape: box, size: [0.06, 0.04, 0.03], material: n-sf11,\n"
+      "   transform: [{rotate: {axis: [1, 1, 0.3], angle: 33}}, {translate: [0, 0, 0.07]}]}\n"
+      "- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.7}\n");
+  FILLED(abbe_image, picture, make_bars(&scene, &desc, NULL, &picture, &bars));
   desc.photons *= 4;
   desc.map_size *= 4;
   desc.wavelengths = 25;
   desc.supersample = 4;
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, &fine);
-  OWNED(abbe_field, reference) = {0};
-  OWNED(abbe_field, test) = {0};
-  OWNED(abbe_comparison, comparison) = {0};
-  OK(abbe_field_make(&fine, "fine", &reference, &error));
-  OK(abbe_field_make(&picture, "picture", &test, &error));
-  OK(abbe_compare(&reference, &test, NULL, &comparison, &error));
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+  OWNED(abbe_image, fine) = picture_of(renderer);
+  MADE(abbe_field, reference, abbe_field_make(&fine, "fine", &reference, &error));
+  MADE(abbe_field, test, abbe_field_make(&picture, "picture", &test, &error));
+  MADE(abbe_comparison, comparison, abbe_compare(&reference, &test, NULL, &comparison, &error));
   double rmse =
       bars.whole.relative_rmse / comparison.whole.metric[ABBE_COMPARE_RELATIVE_RMSE].value;
   double colour = bars.whole.ciede2000 / comparison.whole.metric[ABBE_COMPARE_CIEDE2000_MEAN].value;
@@ -157,15 +137,12 @@ TEST(errors_are_near_those_of_a_scene_that_is_not_shipped) {
     print_error("of the true RMSE %g, of the true CIEDE2000 %g\n", rmse, colour);
   assert_true(rmse > 0.5 && rmse < 2);
   assert_true(colour > 0.5 && colour < 2);
-  abbe_renderer_free(renderer);
-  abbe_error_bars_free(&bars);
 }
 
 TEST(the_mean_has_less_error) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_error_bars bars[2] = {{.ms = 0}};
   abbe_error_bars_desc two = {.variants = 2}, desc = {.variants = 2, .of_mean = true};
-  load_shipped("sphere", &scene);
+  OWNED(abbe_scene, scene) = shipped_scene("sphere");
   make_bars(&scene, &small_frame, &two, NULL, &bars[0]);
   make_bars(&scene, &small_frame, &desc, NULL, &bars[1]);
   assert_true(bars[1].whole.relative_rmse < bars[0].whole.relative_rmse);
@@ -178,7 +155,6 @@ TEST(the_mean_has_less_error) {
 }
 
 TEST(errors_shrink_with_finer_settings) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_render_desc coarse = coarse_frame, fine = coarse_frame;
   abbe_error_bars bars[2] = {{.ms = 0}};
   abbe_error_bars_desc two = {.variants = 2};
@@ -187,7 +163,7 @@ TEST(errors_shrink_with_finer_settings) {
   fine.photons = 128;
   fine.map_size = 512;
   fine.wavelengths = 9;
-  load_shipped("gem", &scene);
+  OWNED(abbe_scene, scene) = shipped_scene("gem");
   make_bars(&scene, &coarse, &two, NULL, &bars[0]);
   make_bars(&scene, &fine, &two, NULL, &bars[1]);
   assert_true(bars[1].caustic.relative_rmse < 0.7 * bars[0].caustic.relative_rmse);
@@ -198,51 +174,40 @@ TEST(errors_shrink_with_finer_settings) {
 
 /* A floor without end under the sun, and nothing else. */
 TEST(no_error_where_nothing_can_differ) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_image, picture) = {0};
-  abbe_error_bars bars = {0};
-  load_text(
+  OWNED(abbe_error_bars, bars) = {0};
+  OWNED(abbe_scene, scene) = scene_of(
       "materials: glass.yaml\ncamera: {eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0]}\n" SUN
-      "objects:\n- {name: floor, shape: rectangle, width: 20, height: 20, reflectance: "
-      "0.5}\n",
-      &scene);
-  make_bars(&scene, &small_frame, NULL, &picture, &bars);
+      "objects:\n- {name: floor, shape: rectangle, width: 20, height: 20, reflectance: 0.5}\n");
+  FILLED(abbe_image, picture, make_bars(&scene, &small_frame, NULL, &picture, &bars));
   assert_true(image_max(&picture, 0) > 0);
   /* Single precision rounds a pixel to 6e-8 of it. */
   for (size_t c = 0; c < 3; c++)
     assert_true(image_max(&bars.error, c) <= 1e-6 * image_max(&picture, c));
   assert_int_equal(bars.frames, 4); /* no photons, no coarse picture */
   assert_int_equal(bars.caustic.pixels, 0);
-  abbe_error_bars_free(&bars);
 }
 
 /* Edges are all that differs where nothing refracts. */
 TEST(edges_have_errors) {
-  OWNED(abbe_scene, scene) = {0};
-  abbe_error_bars bars = {0};
   abbe_error_bars_desc two = {.variants = 2};
-  load_text(CAMERA SUN FLOOR HILL, &scene);
-  make_bars(&scene, &small_frame, &two, NULL, &bars);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA SUN FLOOR HILL);
+  FILLED(abbe_error_bars, bars, make_bars(&scene, &small_frame, &two, NULL, &bars));
   assert_true(image_max(&bars.error, 0) > 0);
   assert_finite(&bars.error);
-  abbe_error_bars_free(&bars);
 }
 
 TEST(the_layer_is_what_compare_reads) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_image, picture) = {0};
-  abbe_error_bars bars = {0};
-  OWNED(abbe_field, field) = {0};
+  OWNED(abbe_error_bars, bars) = {0};
   abbe_render_desc xyz = small_frame;
   abbe_error_bars_desc two = {.variants = 2};
   xyz.space = ABBE_RGB_SPACE_XYZ;
-  load_shipped("sphere", &scene);
-  make_bars(&scene, &xyz, &two, &picture, &bars);
+  OWNED(abbe_scene, scene) = shipped_scene("sphere");
+  FILLED(abbe_image, picture, make_bars(&scene, &xyz, &two, &picture, &bars));
   assert_string_equal(bars.error.channel[1], "stderr.Y");
   OK(abbe_error_bars_attach(&bars, &picture, &error));
   assert_int_equal(picture.channels, 6);
   assert_string_equal(abbe_image_attribute_text(&picture, "abbe:space"), "xyz");
-  OK(abbe_field_make(&picture, "picture", &field, &error));
+  MADE(abbe_field, field, abbe_field_make(&picture, "picture", &field, &error));
   assert_non_null(field.colour.error);
   for (size_t i = 0; i < 3 * field.width * field.height; i++)
     assert_true(field.colour.error[i] == bars.error.data[i]);
@@ -250,7 +215,6 @@ TEST(the_layer_is_what_compare_reads) {
   picture.width /= 2;
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_error_bars_attach(&bars, &picture, &error));
   picture.width *= 2;
-  abbe_error_bars_free(&bars);
 }
 
 static bool stop_now(void *user, double done) {
@@ -260,14 +224,12 @@ static bool stop_now(void *user, double done) {
 }
 
 TEST(what_is_refused) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_error_bars bars = {0};
   int calls = 0;
   abbe_error_bars_desc one = {.variants = 1}, many = {.variants = 65};
   abbe_error_bars_desc stopped = {.progress = stop_now, .user = &calls};
-  load_shipped("sphere", &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
-  draw_frame(renderer);
+  OWNED(abbe_scene, scene) = shipped_scene("sphere");
+  abbe_renderer *renderer = drawn_renderer(&scene, &small_frame);
   REFUSED(ABBE_INVALID_ARGUMENT, "1 variants: there may be 2 to 64",
           abbe_error_bars_make(context, &scene, renderer, &one, &bars, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "",

@@ -10,30 +10,29 @@
 
 static const char *const folder_name = "/tmp/abbe-test-errors-XXXXXX";
 
-/* 64 x 64 pixels: the left half without error, the right half of `error` each. */
-static abbe_error_bars bars_of(double error) {
+/* 64 x 64 pixels: the left half without error, the right half of `each`. */
+static abbe_error_bars bars_of(double each) {
   static const char *const errors[] = {"stderr.X", "stderr.Y", "stderr.Z"};
   static const char *const names[] = {"X", "Y", "Z"};
   abbe_error_bars bars = {0};
-  assert_int_equal(abbe_image_make(64, 64, 3, errors, &bars.error, NULL), ABBE_OK);
-  assert_int_equal(abbe_image_make(64, 64, 3, names, &bars.mean, NULL), ABBE_OK);
-  assert_int_equal(abbe_image_set_attribute(&bars.mean, "abbe:space", "xyz", NULL), ABBE_OK);
+  OK(abbe_image_make(64, 64, 3, errors, &bars.error, &error));
+  OK(abbe_image_make(64, 64, 3, names, &bars.mean, &error));
+  OK(abbe_image_set_attribute(&bars.mean, "abbe:space", "xyz", &error));
   for (size_t p = 0; p < 64 * 64; p++)
-    if (p % 64 >= 32) bars.error.data[3 * p + 1] = (float)error;
+    if (p % 64 >= 32) bars.error.data[3 * p + 1] = (float)each;
   return bars;
 }
 
 /* Pixels of the colour of t in the picture of the errors. */
 static size_t count(const abbe_error_bars *bars, double t) {
-  char folder[64], path[96];
-  abbe_image image = {0};
+  char folder[64];
   double rgb[3];
   size_t found = 0;
   snprintf(folder, sizeof folder, "%s", folder_name);
   assert_non_null(mkdtemp(folder));
-  snprintf(path, sizeof path, "%s/errors.png", folder);
+  const char *path = printed("%s/errors.png", folder);
   OK(abbe_error_picture_write(path, bars, &error));
-  OK(abbe_png_read(path, &image, &error));
+  MADE(abbe_image, image, abbe_png_read(path, &image, &error));
   abbe_colour_map_at(ABBE_COLOUR_MAP_AMOUNT, t, rgb);
   for (size_t p = 0; p < image.width * image.height; p++) {
     bool same = true;
@@ -41,7 +40,6 @@ static size_t count(const abbe_error_bars *bars, double t) {
       same = same && fabs((double)image.data[p * image.channels + c] - rgb[c]) < 1.5 / 255;
     found += same;
   }
-  abbe_image_free(&image);
   unlink(path);
   rmdir(folder);
   return found;
@@ -50,24 +48,21 @@ static size_t count(const abbe_error_bars *bars, double t) {
 TEST(colours) {
   /* A pixel is drawn as 8 x 8, and the frame lies on the rim. The scale runs from 0.0005 to 0.5;
    * 0.05 is two thirds of its decades up. */
-  abbe_error_bars bars = bars_of(0.05);
+  OWNED(abbe_error_bars, bars) = bars_of(0.05);
   for (size_t p = 32; p < 64; p++) bars.error.data[3 * p + 1] = 0.5f;
   assert_true(count(&bars, 0) >= 254 * 508);
   assert_true(count(&bars, 2.0 / 3.0) >= 254 * 500);
   assert_true(count(&bars, 1) >= 254 * 6);
-  abbe_error_bars_free(&bars);
 }
 
 /* Without any error all is black, and the scale still has a length. */
 TEST(no_error_at_all) {
-  abbe_error_bars bars = bars_of(0);
+  OWNED(abbe_error_bars, bars) = bars_of(0);
   assert_true(count(&bars, 0) >= 508 * 508);
-  abbe_error_bars_free(&bars);
 }
 
 TEST(other_formats_are_refused) {
-  abbe_error_bars bars = bars_of(1);
+  OWNED(abbe_error_bars, bars) = bars_of(1);
   REFUSED(ABBE_INVALID_ARGUMENT, "errors.gif",
           abbe_error_picture_write("errors.gif", &bars, &error));
-  abbe_error_bars_free(&bars);
 }

@@ -18,11 +18,10 @@ static bool watch_frames(void *user, double done) {
 GROUP(make_context, free_context);
 
 TEST(times) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_frame_times times;
-  load_text(SCENE, &scene);
+  OWNED(abbe_scene, scene) = scene_of(SCENE);
   const abbe_render_desc small = {.width = 16, .height = 16, .photons = 16, .map_size = 32};
-  abbe_renderer *renderer = make_renderer(&scene, &small);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &small);
   watch w = {.most = 4};
   abbe_frame_times_desc desc = {.frames = 4, .progress = watch_frames, .user = &w};
   OK(abbe_frame_times_measure(renderer, &desc, &times, &error));
@@ -40,7 +39,6 @@ TEST(times) {
   double ms = 0;
   OK(abbe_frame_times_baseline(renderer, 3, &ms, &error));
   assert_true(ms > 0);
-  abbe_renderer_free(renderer);
 }
 
 TEST(unrest) {
@@ -59,13 +57,11 @@ TEST(unrest) {
 
 /* A camera's frame traces no photon, and the camera ends where it was. */
 TEST(camera) {
-  OWNED(abbe_scene, scene) = {0};
-  abbe_image before, after;
-  load_text(SCENE, &scene);
+  abbe_image after;
+  OWNED(abbe_scene, scene) = scene_of(SCENE);
   const abbe_render_desc small = {.width = 16, .height = 16, .photons = 16, .map_size = 32};
-  abbe_renderer *renderer = make_renderer(&scene, &small);
-  draw_frame(renderer);
-  OK(abbe_renderer_read(renderer, false, &before, &error));
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &small);
+  MADE(abbe_image, before, abbe_renderer_read(renderer, false, &before, &error));
   for (size_t count = 1; count <= 4; count += 3) {
     double ms = 0;
     OK(abbe_frame_times_camera(renderer, &scene, &small, count, &ms, &error));
@@ -75,6 +71,4 @@ TEST(camera) {
     abbe_image_free(&after);
     assert_true(draw_frame(renderer).kept[ABBE_PASS_PHOTONS]);
   }
-  abbe_image_free(&before);
-  abbe_renderer_free(renderer);
 }

@@ -12,13 +12,13 @@
   ", eye_ms: 10, error: " error ", least: 0.5}\n"
 #define THREE POINT("32", "20", "8") POINT("64", "40", "4") POINT("128", "160", "2")
 
-static abbe_result load_presets(const char *text, abbe_presets *out, abbe_error *error) {
+static abbe_result load_presets(const char *text, abbe_presets *out, abbe_error *why) {
   char path[] = "/tmp/abbe-test-presets-XXXXXX";
   int file = mkstemp(path);
   assert_true(file >= 0);
   close(file);
-  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
-  abbe_result result = abbe_presets_load(path, out, error);
+  OK(abbe_file_write(path, text, strlen(text), &error));
+  abbe_result result = abbe_presets_load(path, out, why);
   unlink(path);
   return result;
 }
@@ -35,9 +35,8 @@ static bool is_fine(const abbe_render_desc *d) {
 }
 
 TEST(the_shipped_presets_are_whole) {
-  abbe_presets presets;
   bool seen[ABBE_PRESET_CLASS_COUNT] = {false};
-  OK(abbe_presets_load(NULL, &presets, &error));
+  MADE(abbe_presets, presets, abbe_presets_load(NULL, &presets, &error));
   assert_string_equal(presets.error, "caustic_de");
   assert_true(strlen(presets.run) > 20);
   for (size_t i = 0; i < presets.count; i++) {
@@ -55,7 +54,6 @@ TEST(the_shipped_presets_are_whole) {
   assert_true(seen[ABBE_PRESET_CLASS_BOWS]);
   assert_true(seen[ABBE_PRESET_CLASS_CONVEX]);
   assert_true(seen[ABBE_PRESET_CLASS_MESHES]);
-  abbe_presets_free(&presets);
 }
 
 TEST(broken_files_are_named) {
@@ -91,10 +89,10 @@ TEST(broken_files_are_named) {
 /* What is promised is what was measured times the margin; the first point's time is measured anew.
  */
 TEST(margins_widen_promises) {
-  abbe_presets presets;
   bool kept;
-  OK(load_presets(HEAD CLASS THREE "  margin: 1.5\n  time_margin: 2\n  margin_scenes: 3\n",
-                  &presets, &error));
+  MADE(abbe_presets, presets,
+       load_presets(HEAD CLASS THREE "  margin: 1.5\n  time_margin: 2\n  margin_scenes: 3\n",
+                    &presets, &error));
   const abbe_preset_front *f = &presets.front[0];
   assert_int_equal(f->margin_scenes, 3);
   static const double worst[] = {8, 4, 2}, light[] = {20, 80, 320}, eye[] = {10, 20, 20};
@@ -110,24 +108,21 @@ TEST(margins_widen_promises) {
   const abbe_preset_speed same = {.light = 1, .eye = 1};
   assert_int_equal(abbe_preset_for_time(f, &same, 99, &kept), 0);
   assert_int_equal(abbe_preset_for_time(f, &same, 100, &kept), 1);
-  abbe_presets_free(&presets);
 }
 
 /* Presets off a sweep without fine settings have no accurate: the name promises more than the
  * defaults. */
 TEST(a_name_may_be_missing) {
-  abbe_presets presets;
-  OK(load_presets(HEAD "- class: convex\n  scenes: \"gem\"\n  draft: 0\n  front:\n" THREE, &presets,
-                  &error));
+  MADE(abbe_presets, presets,
+       load_presets(HEAD "- class: convex\n  scenes: \"gem\"\n  draft: 0\n  front:\n" THREE,
+                    &presets, &error));
   assert_int_equal(presets.front[0].named[ABBE_PRESET_DRAFT], 0);
   assert_int_equal(presets.front[0].named[ABBE_PRESET_ACCURATE], 3);
-  abbe_presets_free(&presets);
 }
 
 TEST(choices) {
-  abbe_presets presets;
   bool kept;
-  OK(load_presets(HEAD CLASS THREE, &presets, &error));
+  MADE(abbe_presets, presets, load_presets(HEAD CLASS THREE, &presets, &error));
   const abbe_preset_front *f = &presets.front[0];
   assert_int_equal(abbe_preset_for_error(f, 100, &kept), 0);
   assert_true(kept);
@@ -146,12 +141,10 @@ TEST(choices) {
   assert_true(kept);
   assert_int_equal(abbe_preset_for_time(f, &slow, 139, &kept), 0);
   assert_false(kept);
-  abbe_presets_free(&presets);
 }
 
 TEST(what_the_caller_asks_for_stays) {
-  abbe_presets presets;
-  OK(load_presets(HEAD CLASS THREE, &presets, &error));
+  MADE(abbe_presets, presets, load_presets(HEAD CLASS THREE, &presets, &error));
   abbe_render_desc empty = {0}, own = {.wavelengths = 21}, equal = {.photons = 64};
   const abbe_preset_point *point = &presets.front[0].point[1];
   assert_true(abbe_preset_apply(point, NULL, &empty));
@@ -186,7 +179,6 @@ TEST(what_the_caller_asks_for_stays) {
   assert_true(coarse.upsample == 2 && coarse.supersample == 1);
   assert_false(abbe_preset_apply(&draft, NULL, &fine));
   assert_true(fine.upsample == 1 && fine.supersample == 2);
-  abbe_presets_free(&presets);
 }
 
 /* The fastest points of meshes follow no light off mirrors, show nothing that stands in a refractor
@@ -201,17 +193,15 @@ TEST(layers_are_left_where_they_show_too_little) {
   static const char *const texts[] = {
       CAMERA POINT_LIGHT FLOOR RING("crown"),
       CAMERA POINT_LIGHT FLOOR RING(
-          "crown") "- {name: glass, shape: rectangle, width: 1, height: 1, mirror: 0.9, "
-                   "transform: [{translate: [0, 0, -1]}]}\n",
+          "crown") "- {name: glass, shape: rectangle, width: 1, height: 1, mirror: 0.9, transform: "
+                   "[{translate: [0, 0, -1]}]}\n",
       SEA("", "-0.2"), SEA("", "-0.5"), SEA(", medium: {scattering: 1}", "-0.5")};
   static const bool may[] = {true, false, false, true, false};
-  abbe_presets presets;
   size_t layers = 0;
   const abbe_scene inside = {.camera.inside = true};
-  OK(abbe_presets_load(NULL, &presets, &error));
+  MADE(abbe_presets, presets, abbe_presets_load(NULL, &presets, &error));
   for (size_t t = 0; t < sizeof texts / sizeof *texts; t++) {
-    OWNED(abbe_scene, scene) = {0};
-    load_text(texts[t], &scene);
+    OWNED(abbe_scene, scene) = scene_of(texts[t]);
     for (size_t i = 0; i < presets.count; i++)
       for (size_t k = 0; k < presets.front[i].count; k++) {
         const abbe_preset_point *point = &presets.front[i].point[k];
@@ -233,7 +223,6 @@ TEST(layers_are_left_where_they_show_too_little) {
       }
   }
   assert_true(layers > 0);
-  abbe_presets_free(&presets);
 }
 
 /* From between floor and ball: no receiver stands behind it. */
@@ -248,15 +237,12 @@ TEST(classes_and_calibration) {
                 {CAMERA LAMP_BELOW FLOOR BRICK("crown"), ABBE_PRESET_CLASS_CONVEX},
                 {CAMERA POINT_LIGHT FLOOR RING("crown"), ABBE_PRESET_CLASS_MESHES},
                 {CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("crown"), ABBE_PRESET_CLASS_CONVEX}};
-  abbe_presets presets;
   abbe_error why = {0};
-  OK(load_presets(HEAD CLASS THREE, &presets, &error));
+  MADE(abbe_presets, presets, load_presets(HEAD CLASS THREE, &presets, &error));
   for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
-    OWNED(abbe_scene, scene) = {0};
-    OWNED(abbe_plan, plan);
     const abbe_preset_front *front = NULL;
-    load_text(scenes[i].text, &scene);
-    OK(abbe_plan_make(&scene, NULL, &plan, &error));
+    OWNED(abbe_scene, scene) = scene_of(scenes[i].text);
+    MADE(abbe_plan, plan, abbe_plan_make(&scene, NULL, &plan, &error));
     assert_int_equal(abbe_preset_class_of(&plan), scenes[i].of);
     abbe_result result = abbe_presets_find(&presets, &plan, &front, &why);
     assert_int_equal(result, scenes[i].of == ABBE_PRESET_CLASS_CONVEX ? ABBE_OK : ABBE_UNSUPPORTED);
@@ -269,5 +255,4 @@ TEST(classes_and_calibration) {
       assert_true(speed.eye > 0 && isfinite(speed.eye));
     }
   }
-  abbe_presets_free(&presets);
 }

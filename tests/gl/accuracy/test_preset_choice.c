@@ -29,7 +29,7 @@ static abbe_result choose(abbe_preset_request request, abbe_render_desc *desc,
 static void begin(void) {
   snprintf(path, sizeof path, "/tmp/abbe_test_preset_choice_%ld.yaml", (long)getpid());
   OK(abbe_file_write(path, PRESETS, strlen(PRESETS), &error));
-  load_text(SCENE, &scene);
+  scene = scene_of(SCENE);
   make_context();
 }
 
@@ -42,9 +42,8 @@ static void finish(void) {
 GROUP(begin, finish);
 
 TEST(names_and_errors) {
-  abbe_preset_choice c;
   abbe_render_desc desc = {.width = 16, .height = 16};
-  OK(choose((abbe_preset_request){.name = "balanced"}, &desc, &c, &error));
+  MADE(abbe_preset_choice, c, choose((abbe_preset_request){.name = "balanced"}, &desc, &c, &error));
   assert_int_equal(desc.photons, 24);
   assert_true(c.kept && !c.overridden && !c.timed);
   OK(abbe_preset_choice_check(&c, 1e9, &error));
@@ -62,13 +61,11 @@ TEST(names_and_errors) {
   assert_int_equal(desc.photons, 32);
   assert_false(c.kept);
   REFUSED(ABBE_TOLERANCE, "", abbe_preset_choice_check(&c, 1, &error));
-  abbe_preset_choice_free(&c);
 }
 
 TEST(times) {
-  abbe_preset_choice c;
   abbe_render_desc desc = {.width = 16, .height = 16};
-  OK(choose((abbe_preset_request){.budget_ms = 1e-6}, &desc, &c, &error));
+  MADE(abbe_preset_choice, c, choose((abbe_preset_request){.budget_ms = 1e-6}, &desc, &c, &error));
   assert_int_equal(desc.photons, 16);
   assert_true(c.timed && c.promised_ms > 0);
   assert_false(c.kept);
@@ -83,13 +80,11 @@ TEST(times) {
   c.unrest = 0.05;
   REFUSED(ABBE_TOLERANCE, "", abbe_preset_choice_check(&c, 1, &error));
   assert_null(strstr(last_error.text, "busy"));
-  abbe_preset_choice_free(&c);
 }
 
 TEST(what_cannot_be_chosen) {
-  abbe_preset_choice c;
   abbe_render_desc desc = {0}, thesis = {.profile = ABBE_PROFILE_THESIS};
-  OK(choose((abbe_preset_request){0}, &desc, &c, &error));
+  MADE(abbe_preset_choice, c, choose((abbe_preset_request){0}, &desc, &c, &error));
   assert_null(c.point);
   assert_int_equal(desc.photons, 0);
   OK(abbe_preset_choice_check(&c, 1e9, &error));
@@ -97,23 +92,16 @@ TEST(what_cannot_be_chosen) {
           choose((abbe_preset_request){.name = "accurate"}, &desc, &c, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "",
           choose((abbe_preset_request){.name = "draft"}, &thesis, &c, &error));
-  abbe_preset_choice_free(&c);
 }
 
 TEST(settings_in_words) {
   char text[200];
-  abbe_render_desc d = {.wavelengths = 7,
-                        .photons = 256,
-                        .map_size = 1024,
-                        .supersample = 1,
-                        .upsample = 2,
-                        .fill = ABBE_FILL_BRIDGE,
-                        .exits = 8,
-                        .energy_share = 0.01};
+  abbe_render_desc d =
+      FIELDS(.wavelengths = 7, .photons = 256, .map_size = 1024, .supersample = 1, .upsample = 2,
+             .fill = ABBE_FILL_BRIDGE, .exits = 8, .energy_share = 0.01);
   abbe_preset_describe(&d, text, sizeof text);
-  assert_string_equal(text,
-                      "7 wavelengths, 256 photons, map 1024, 1 samples, fill bridge, 8 exits, "
-                      "share 0.01, model auto, upsample 2");
+  assert_string_equal(text, "7 wavelengths, 256 photons, map 1024, 1 samples, fill bridge, 8 "
+                            "exits, share 0.01, model auto, upsample 2");
   d.profile = ABBE_PROFILE_THESIS_CIE;
   abbe_preset_describe(&d, text, sizeof text);
   assert_contains(text, "thesis-cie: 7 wavelengths");

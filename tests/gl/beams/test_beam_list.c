@@ -40,12 +40,12 @@ TEST(a_beam_into_the_open) {
 
 /* The other mirror sends it up, and away. */
 TEST(a_beam_between_two_mirrors) {
-  const double drawn =
-      green_of(BESIDE_MIST("scattering: 0.8, absorption: 0.3",
-                           "- {name: other, shape: rectangle, width: 0.2, height: 0.2, mirror: "
-                           "0.5, transform: [{rotate: {axis: [0, 1, 0], angle: 45}}, {translate: "
-                           "[0.8, 0, 0]}]}\n"),
-               96);
+  const double drawn = green_of(
+      BESIDE_MIST(
+          "scattering: 0.8, absorption: 0.3",
+          "- {name: other, shape: rectangle, width: 0.2, height: 0.2, mirror: 0.5, transform: "
+          "[{rotate: {axis: [0, 1, 0], angle: 45}}, {translate: [0.8, 0, 0]}]}\n"),
+      96);
   print_message("between two mirrors: %.4f of the known light\n", drawn / across(0.8, 1.1));
   assert_near(drawn / across(0.8, 1.1), 1, 0.01);
 }
@@ -53,11 +53,11 @@ TEST(a_beam_between_two_mirrors) {
 /* Through a plate of glass, of its Fresnel loss, into the open. */
 TEST(a_beam_behind_glass) {
   const double once = 0.5 / 2.5, lost = once * once, through = (1 - lost) / (1 + lost);
-  const double drawn = green_of(
-      BESIDE_MIST("scattering: 0.8, absorption: 0.3",
-                  "- {name: plate, shape: box, size: [0.01, 0.4, 0.4], material: flat, transform: "
-                  "[{translate: [0.12, 0, 0]}]}\n"),
-      96);
+  const double drawn =
+      green_of(BESIDE_MIST("scattering: 0.8, absorption: 0.3",
+                           "- {name: plate, shape: box, size: [0.01, 0.4, 0.4], material: flat, "
+                           "transform: [{translate: [0.12, 0, 0]}]}\n"),
+               96);
   print_message("behind glass: %.4f of the known light\n", drawn / (through * across(0.8, 1.1)));
   assert_near(drawn / (through * across(0.8, 1.1)), 1, 0.02);
 }

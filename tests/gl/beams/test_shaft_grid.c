@@ -81,8 +81,8 @@ TEST(mirrored_in_its_surface) {
     second +=
         exp(-scattering * high / up[2]) * scattered_along(down, 0, deep / up[2]) / (SIDE * SIDE);
   }
-  static const char basin[] = BASIN("eye: [-0.4, 0, -0.2], target: [-0.1247236, 0, 0], "
-                                    "up: [0, 1, 0], fov: 12, inside: true");
+  static const char basin[] = BASIN(
+      "eye: [-0.4, 0, -0.2], target: [-0.1247236, 0, 0], up: [0, 1, 0], fov: 12, inside: true");
   const double drawn = green_of(basin, 96), coarse = green_as(basin, 96, ABBE_COARSE_EYE);
   print_message("mirrored: %.4f of the known light, of which %.3f on the way up\n",
                 drawn / (first + second), first / (first + second));

@@ -6,19 +6,15 @@ enum { BANDS = 96 };
 
 /* The map of one frame, with so many bands. */
 static void make_bands(const abbe_scene *scene, size_t bands, abbe_image *map) {
-  abbe_renderer *renderer = make_renderer(scene, &small_frame);
-  draw_frame(renderer);
+  HELD(abbe_renderer, renderer) = drawn_renderer(scene, &small_frame);
   OK(abbe_renderer_read_map_bands(renderer, 0, bands, map, &error));
-  abbe_renderer_free(renderer);
 }
 
 GROUP(make_context, free_context);
 
 TEST(bands_add_up_to_the_colour) {
-  OWNED(abbe_scene, scene);
-  OWNED(abbe_image, map);
-  load_shipped("gem", &scene);
-  make_bands(&scene, BANDS, &map);
+  OWNED(abbe_scene, scene) = shipped_scene("gem");
+  FILLED(abbe_image, map, make_bands(&scene, BANDS, &map));
   assert_int_equal(map.channels, 3 + BANDS);
   assert_string_equal(map.channel[3], "S0.382,083333nm");
   assert_string_equal(map.channel[3 + BANDS - 1], "S0.777,916667nm");
@@ -54,10 +50,8 @@ static double middle_of(const abbe_image *map, size_t channel, int axis) {
 }
 
 TEST(a_prism_sorts_the_bands) {
-  OWNED(abbe_scene, scene);
-  OWNED(abbe_image, map);
-  load_shipped("prism", &scene);
-  make_bands(&scene, 8, &map);
+  OWNED(abbe_scene, scene) = shipped_scene("prism");
+  FILLED(abbe_image, map, make_bands(&scene, 8, &map));
   const double across = middle_of(&map, 10, 0) - middle_of(&map, 3, 0);
   const double along = middle_of(&map, 10, 1) - middle_of(&map, 3, 1);
   const int axis = fabs(along) > fabs(across);
@@ -68,32 +62,24 @@ TEST(a_prism_sorts_the_bands) {
 }
 
 TEST(the_renderer_is_as_it_was) {
-  OWNED(abbe_scene, scene);
-  abbe_image before, bands, after;
-  load_shipped("gem", &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
-  draw_frame(renderer);
-  read_map(renderer, 0, &before);
-  OK(abbe_renderer_read_map_bands(renderer, 0, 5, &bands, &error));
-  read_map(renderer, 0, &after);
+  OWNED(abbe_scene, scene) = shipped_scene("gem");
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &small_frame);
+  OWNED(abbe_image, before) = map_of(renderer, 0);
+  MADE(abbe_image, bands, abbe_renderer_read_map_bands(renderer, 0, 5, &bands, &error));
+  OWNED(abbe_image, after) = map_of(renderer, 0);
   assert_same_pixels(&before, &after);
   for (size_t i = 0; i < before.width * before.height; i++)
     assert_memory_equal(before.data + 3 * i, bands.data + 8 * i, 3 * sizeof(float));
   abbe_image_free(&after);
-  abbe_image_free(&bands);
-  abbe_image_free(&before);
   draw_frame(renderer);
-  read_map(renderer, 0, &after);
+  after = map_of(renderer, 0);
   assert_true(image_sum(&after, 1) > 0);
-  abbe_image_free(&after);
-  abbe_renderer_free(renderer);
 }
 
 TEST(refuses_what_has_no_bands) {
-  OWNED(abbe_scene, scene);
   abbe_image map;
-  load_shipped("gem", &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
+  OWNED(abbe_scene, scene) = shipped_scene("gem");
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &small_frame);
   const size_t bad[] = {0, ABBE_RENDER_MAX_BANDS + 1};
   for (size_t i = 0; i < 2; i++)
     REFUSED(ABBE_INVALID_ARGUMENT, "",
@@ -105,5 +91,4 @@ TEST(refuses_what_has_no_bands) {
   renderer = make_renderer(&scene, &desc);
   REFUSED(ABBE_INVALID_ARGUMENT, "thesis",
           abbe_renderer_read_map_bands(renderer, 0, 3, &map, &error));
-  abbe_renderer_free(renderer);
 }

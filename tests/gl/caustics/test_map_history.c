@@ -7,24 +7,17 @@ enum { SIDE = 96, FRAMES = ABBE_RENDER_MAX_HISTORY };
 static const double places[FRAMES][2] = {
     {-0.375, 0.125}, {0.375, -0.125}, {0.125, 0.375}, {-0.125, -0.375}};
 
-static const abbe_render_desc desc = {.width = 16,
-                                      .height = 16,
-                                      .photons = 40,
-                                      .map_size = SIDE,
-                                      .wavelengths = 5,
-                                      .history = FRAMES};
+static const abbe_render_desc desc = FIELDS(.width = 16, .height = 16, .photons = 40,
+                                            .map_size = SIDE, .wavelengths = 5, .history = FRAMES);
 
 /* A brick of crown glass, so far to the right: what comes through it is a patch or a few. */
 static void load_brick(double x, abbe_scene *scene) {
-  char text[1024];
   const int digits = (int)lround(1e5 * x);
-  snprintf(
-      text, sizeof text,
+  *scene = scene_of(printed(
       CAMERA POINT_LIGHT FLOOR
-      "- {name: brick, shape: box, size: [0.1, 0.08, 0.06], transform: [{rotate: {axis: [0, 0, "
-      "1], angle: 20}}, {translate: [0.%05d, 0, 0.2]}], material: crown}\n",
-      digits);
-  load_text(text, scene);
+      "- {name: brick, shape: box, size: [0.1, 0.08, 0.06], transform: [{rotate: {axis: [0, "
+      "0, 1], angle: 20}}, {translate: [0.%05d, 0, 0.2]}], material: crown}\n",
+      digits));
   look_aside(scene);
 }
 
@@ -52,8 +45,7 @@ static void draw_mean(const abbe_scene *scene, const abbe_render_desc *like, siz
                       size_t last, abbe_image *out) {
   draw_alone(scene, like, first, out);
   for (size_t k = first + 1; k <= last; k++) {
-    OWNED(abbe_image, one) = {0};
-    draw_alone(scene, like, k, &one);
+    FILLED(abbe_image, one, draw_alone(scene, like, k, &one));
     for (size_t i = 0; i < 3 * SIDE * SIDE; i++) out->data[i] += one.data[i];
   }
   for (size_t i = 0; i < 3 * SIDE * SIDE; i++) out->data[i] /= (float)(last - first + 1);
@@ -69,19 +61,18 @@ static double apart(const abbe_image *a, const abbe_image *b) {
 GROUP(make_context, free_context);
 
 TEST(a_still_scene_comes_to_the_mean) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_map_layout layout;
-  abbe_image map = {0}, mean = {0}, last = {0};
-  load_brick(0.1, &scene);
+  OWNED(abbe_image, map) = {0}, mean = {0}, last = {0};
+  FILLED(abbe_scene, scene, load_brick(0.1, &scene));
   lay_out(&scene, &layout);
   abbe_render_desc given = desc;
   given.map_layout = &layout;
-  abbe_renderer *renderer = make_renderer(&scene, &given);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &given);
   for (size_t k = 0; k < FRAMES; k++) {
     abbe_image_free(&map);
     abbe_image_free(&mean);
     draw_frame(renderer);
-    read_map(renderer, 0, &map);
+    map = map_of(renderer, 0);
     draw_mean(&scene, &given, 0, k, &mean);
     assert_true(apart(&map, &mean) < 1e-6);
   }
@@ -91,12 +82,8 @@ TEST(a_still_scene_comes_to_the_mean) {
   /* and stays */
   const abbe_statistics s = draw_frame(renderer);
   assert_true(s.kept[ABBE_PASS_SPECTRAL_MAP] && s.kept[ABBE_PASS_PHOTONS]);
-  read_map(renderer, 0, &last);
+  last = map_of(renderer, 0);
   assert_same_pixels(&map, &last);
-  abbe_renderer_free(renderer);
-  abbe_image_free(&map);
-  abbe_image_free(&mean);
-  abbe_image_free(&last);
 }
 
 static abbe_statistics change_and_draw(abbe_renderer *renderer, const abbe_scene *scene,
@@ -104,7 +91,7 @@ static abbe_statistics change_and_draw(abbe_renderer *renderer, const abbe_scene
   OK(abbe_renderer_change(renderer, scene, like, &error));
   const abbe_statistics s = draw_frame(renderer);
   abbe_image_free(out);
-  read_map(renderer, 0, out);
+  *out = map_of(renderer, 0);
   return s;
 }
 
@@ -113,7 +100,8 @@ static abbe_statistics change_and_draw(abbe_renderer *renderer, const abbe_scene
 TEST(what_stays_is_drawn_once) {
   abbe_scene scene[2] = {{0}};
   abbe_map_layout layout;
-  abbe_image map[2] = {{0}}, kept = {0};
+  abbe_image map[2] = {{0}};
+  OWNED(abbe_image, kept) = {0};
   for (int k = 0; k < 2; k++) load_brick(0.1 + 0.01 * k, &scene[k]);
   lay_out(&scene[0], &layout);
   abbe_render_desc given = desc;
@@ -123,7 +111,7 @@ TEST(what_stays_is_drawn_once) {
   abbe_renderer *renderer[2] = {make_renderer(&scene[0], &given), make_renderer(&scene[0], &once)};
   for (int k = 0; k < 2; k++) {
     draw_frame(renderer[k]);
-    read_map(renderer[k], 0, &map[k]);
+    map[k] = map_of(renderer[k], 0);
   }
   assert_same_pixels(&map[0], &map[1]);
   scene[0].camera.eye[0] += 0.01;
@@ -141,7 +129,6 @@ TEST(what_stays_is_drawn_once) {
     abbe_image_free(&map[k]);
     abbe_scene_free(&scene[k]);
   }
-  abbe_image_free(&kept);
 }
 
 /* The least and the most of a texel and the eight around it. */
@@ -163,21 +150,21 @@ static void nearby(const abbe_image *map, size_t i, double *least, double *most)
 TEST(nothing_is_left_after_a_jump) {
   abbe_scene scene[2] = {{0}};
   abbe_map_layout layout;
-  abbe_image before = {0}, map = {0}, alone = {0};
+  abbe_image map = {0}, alone = {0};
   for (int k = 0; k < 2; k++) load_brick(0.05 + 0.14 * k, &scene[k]);
   lay_out(&scene[0], &layout);
   abbe_render_desc given = desc;
   given.map_layout = &layout;
   abbe_renderer *renderer = make_renderer(&scene[0], &given);
   for (size_t k = 0; k < FRAMES; k++) draw_frame(renderer);
-  read_map(renderer, 0, &before);
+  OWNED(abbe_image, before) = map_of(renderer, 0);
   OK(abbe_renderer_change(renderer, &scene[1], &given, &error));
   for (size_t k = FRAMES; k < 2 * FRAMES; k++) {
     double was = 0, ghost = 0, off = 0;
     draw_frame(renderer);
     abbe_image_free(&map);
     abbe_image_free(&alone);
-    read_map(renderer, 0, &map);
+    map = map_of(renderer, 0);
     draw_mean(&scene[1], &given, FRAMES, k, &alone); /* of those since the jump */
     for (size_t i = 0; i < 3 * SIDE * SIDE; i++) {
       double least, most;
@@ -197,7 +184,6 @@ TEST(nothing_is_left_after_a_jump) {
     assert_true(0.5 * off / all < (k + 1 < 2 * FRAMES ? 0.25 : 1e-6));
   }
   abbe_renderer_free(renderer);
-  abbe_image_free(&before);
   abbe_image_free(&map);
   abbe_image_free(&alone);
   for (int k = 0; k < 2; k++) abbe_scene_free(&scene[k]);
@@ -230,7 +216,7 @@ static void measure_motion(motion out[2]) {
                                    .history = k == MANY ? 0
                                               : k == 0  ? 1
                                                         : FRAMES};
-    load_shipped("gem", &scene[k]);
+    scene[k] = shipped_scene("gem");
   }
   for (int step = 0; step < STEPS; step++) {
     abbe_image picture[3] = {{0}};
@@ -241,7 +227,7 @@ static void measure_motion(motion out[2]) {
       else
         OK(abbe_renderer_change(renderer[k], &scene[k], &moving[k], &error));
       draw_frame(renderer[k]);
-      read_picture(renderer[k], true, &picture[k]);
+      picture[k] = aovs_of(renderer[k]);
     }
     const size_t y = abbe_image_find_channel(&picture[0], "caustic.Y"), n = picture[0].channels;
     for (size_t i = 0; i < WIDTH * WIDTH; i++) {

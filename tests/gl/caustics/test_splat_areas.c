@@ -49,12 +49,9 @@ static abbe_receiver_tiles tiles = {
 
 /* To here what splat_sums.h makes of the list. */
 static void run_here(size_t count, bool edges, bool wide, bool on_tiles) {
-  const abbe_splat_sums s = {.word = here,
-                             .side = SIDE,
-                             .texels = (SIDE * SIDE - (SIDE * SIDE >> 2 * LEVELS)) / 3 * 4,
-                             .wide = wide,
-                             .edges = edges,
-                             .tiles = on_tiles ? &tiles : NULL};
+  const abbe_splat_sums s = FIELDS(.word = here, .side = SIDE,
+                                   .texels = (SIDE * SIDE - (SIDE * SIDE >> 2 * LEVELS)) / 3 * 4,
+                                   .wide = wide, .edges = edges, .tiles = on_tiles ? &tiles : NULL);
   memset(here, 0, sizeof here);
   abbe_splat_sums_add(&s, list + 4, count, NULL, NULL);
 }
@@ -63,10 +60,10 @@ static void run_here(size_t count, bool edges, bool wide, bool on_tiles) {
 static void run_there(size_t count, bool edges, bool wide, bool on_tiles) {
   const abbe_gl *gl = abbe_context_gl(context);
   GLuint program = 0;
-  char defines[256];
-  snprintf(defines, sizeof defines, "#define LIGHTS 1\n%s%s", wide ? "#define WIDE\n" : "",
-           on_tiles ? "#define TILES\n#define MOST_TILES 2\n" : "");
-  OK(abbe_program_make_compute(gl, "photon_splat.comp", defines, &program, &error));
+  OK(abbe_program_make_compute(gl, "photon_splat.comp",
+                               printed("#define LIGHTS 1\n%s%s", wide ? "#define WIDE\n" : "",
+                                       on_tiles ? "#define TILES\n#define MOST_TILES 2\n" : ""),
+                               &program, &error));
   float rows[2 * ABBE_TILE_FLOATS] = {0};
   for (int i = 0; i < 2; i++)
     for (int k = 0; k < 4; k++)

@@ -9,17 +9,15 @@
 enum { SIDE = 256, BINS = 4 };
 
 static void load_water(double depth, double phase_deg, abbe_scene *out) {
-  char text[1536];
-  snprintf(text, sizeof text,
-           "materials: default\ncamera: {eye: [0, -9, 4], target: [0, 0, 0]}\n"
-           "lights: [{name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1}]\n"
-           "objects:\n"
-           "- {name: water, shape: water, size: [0.4, 0.4, %.9g], cells: [512, 32], material: "
-           "water, waves: [{amplitude: 0.002, wavelength: 0.1, phase: %.9g}]}\n"
-           "- {name: bottom, shape: rectangle, width: 1, height: 1, reflectance: 1, transform: "
-           "[{translate: [0, 0, %.9g]}]}\n",
-           depth + 0.01, phase_deg, -depth);
-  load_text(text, out);
+  *out = scene_of(
+      printed("materials: default\ncamera: {eye: [0, -9, 4], target: [0, 0, 0]}\n"
+              "lights: [{name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1}]\n"
+              "objects:\n"
+              "- {name: water, shape: water, size: [0.4, 0.4, %.9g], cells: [512, 32], material: "
+              "water, waves: [{amplitude: 0.002, wavelength: 0.1, phase: %.9g}]}\n"
+              "- {name: bottom, shape: rectangle, width: 1, height: 1, reflectance: 1, transform: "
+              "[{translate: [0, 0, %.9g]}]}\n",
+              depth + 0.01, phase_deg, -depth));
 }
 
 /* Two waves across, seen from above. */
@@ -53,25 +51,18 @@ static void sum_bins(const abbe_image *map, double phase, double mean[BINS]) {
 
 static void check_wave(double depth, double phase_deg, double tolerance) {
   const abbe_map_layout layout = two_waves();
-  abbe_render_desc desc = {.width = 16,
-                           .height = 16,
-                           .photons = 512,
-                           .map_size = SIDE,
-                           .min_nm = 587,
-                           .max_nm = 588,
-                           .wavelengths = 1,
-                           .map_layout = &layout};
+  abbe_render_desc desc =
+      FIELDS(.width = 16, .height = 16, .photons = 512, .map_size = SIDE, .min_nm = 587,
+             .max_nm = 588, .wavelengths = 1, .map_layout = &layout);
   abbe_wave_caustic w = {.amplitude = 0.002, .wavelength = 0.1, .depth = depth};
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_image, map) = {0};
   double mean[BINS], worst = 0;
-  load_water(depth, phase_deg, &scene);
+  FILLED(abbe_scene, scene, load_water(depth, phase_deg, &scene));
   OK(abbe_material_n(scene.object[0].material, 587.5, &w.index, &error));
   w.attenuation_per_m = abbe_material_attenuation(scene.object[0].material, 587.5);
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
   const abbe_statistics statistics = draw_frame(renderer);
   assert_true(abbe_ledger_imbalance(&statistics.energy) < 1e-4);
-  read_map(renderer, 0, &map);
+  OWNED(abbe_image, map) = map_of(renderer, 0);
   sum_bins(&map, phase_deg / 360, mean);
   for (int b = 0; b < BINS; b++) {
     const double step = 0.05 / BINS;
@@ -82,7 +73,6 @@ static void check_wave(double depth, double phase_deg, double tolerance) {
   }
   print_message("%g m under a wave: off by %.4f at the most\n", depth, worst);
   assert_true(worst < tolerance);
-  abbe_renderer_free(renderer);
 }
 
 GROUP(make_context, free_context);
@@ -96,29 +86,21 @@ TEST(light_under_a_wave) {
 
 /* Fresnel's law on the way in and out, and of radiance one part in n^2 leaves the water. */
 TEST(light_under_still_water) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_image, picture) = {0};
   double n = 0;
-  load_text("materials: default\n"
-            "camera: {eye: [0.05, 0, 2], target: [0.05, 0, 0], up: [0, 1, 0], fov: 2}\n"
-            "lights: [{name: sun, kind: directional, direction: [0.8660254, 0, -0.5], irradiance: "
-            "1}]\nobjects:\n"
-            "- {name: water, shape: water, size: [1, 1, 0.11], material: water}\n"
-            "- {name: bottom, shape: rectangle, width: 2, height: 2, reflectance: 1, transform: "
-            "[{translate: [0, 0, -0.1]}]}\n",
-            &scene);
+  OWNED(abbe_scene, scene) =
+      scene_of("materials: default\n"
+               "camera: {eye: [0.05, 0, 2], target: [0.05, 0, 0], up: [0, 1, 0], fov: 2}\n"
+               "lights: [{name: sun, kind: directional, direction: [0.8660254, 0, -0.5], "
+               "irradiance: 1}]\nobjects:\n"
+               "- {name: water, shape: water, size: [1, 1, 0.11], material: water}\n"
+               "- {name: bottom, shape: rectangle, width: 2, height: 2, reflectance: 1, transform: "
+               "[{translate: [0, 0, -0.1]}]}\n");
   OK(abbe_material_n(scene.object[0].material, 587.5, &n, &error));
-  const abbe_render_desc desc = {.width = 16,
-                                 .height = 16,
-                                 .photons = 256,
-                                 .map_size = 256,
-                                 .min_nm = 587,
-                                 .max_nm = 588,
-                                 .wavelengths = 1,
-                                 .space = ABBE_RGB_SPACE_XYZ};
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, &picture);
+  const abbe_render_desc desc =
+      FIELDS(.width = 16, .height = 16, .photons = 256, .map_size = 256, .min_nm = 587,
+             .max_nm = 588, .wavelengths = 1, .space = ABBE_RGB_SPACE_XYZ);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+  OWNED(abbe_image, picture) = picture_of(renderer);
   const double through = 1 - abbe_closed_form_fresnel(ABBE_PI / 3, n);
   const double up = 1 - abbe_closed_form_fresnel(0, n), inside = asin(sin(ABBE_PI / 3) / n);
   const double per_m = abbe_material_attenuation(scene.object[0].material, 587.5);
@@ -127,41 +109,28 @@ TEST(light_under_still_water) {
   const double seen = image_sum(&picture, 1) / (16 * 16);
   print_message("still water: %.4f of the known light\n", seen / known);
   assert_near(seen / known, 1, 0.02);
-  abbe_renderer_free(renderer);
 }
 
 /* From under water: a ceiling of radiance 1 straight above is seen through Fresnel's share, n^2
  * times as bright; aslant, beyond the critical angle, the white bottom in the mirror of the
  * surface; and from inside what is inside, as it is. */
 static double seen_from_below(const char *target, double bottom) {
-  char text[1024];
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_image, picture) = {0};
-  snprintf(text, sizeof text,
-           "materials: default\nambient: 3.14159265358979\n"
-           "camera: {eye: [0, 0, -0.2], target: %s, up: [0, 1, 0], fov: 2, inside: true}\n"
-           "lights: [{name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1.0e-9}]\n"
-           "objects:\n- {name: water, shape: water, size: [9, 9, 0.41], material: water}\n"
-           "- {name: bottom, shape: rectangle, width: 8, height: 8, reflectance: %.9g, transform: "
-           "[{translate: [0, 0, -0.4]}]}\n"
-           "- {name: ceiling, shape: rectangle, width: 9, height: 9, reflectance: 1, transform: "
-           "[{translate: [0, 0, 1]}]}\n",
-           target, bottom);
-  load_text(text, &scene);
-  const abbe_render_desc desc = {.width = 16,
-                                 .height = 16,
-                                 .photons = 16,
-                                 .map_size = 64,
-                                 .min_nm = 587,
-                                 .max_nm = 588,
-                                 .wavelengths = 1,
-                                 .space = ABBE_RGB_SPACE_XYZ};
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, &picture);
-  const double mean = image_sum(&picture, 1) / (16 * 16);
-  abbe_renderer_free(renderer);
-  return mean;
+  OWNED(abbe_scene, scene) = scene_of(printed(
+      "materials: default\nambient: 3.14159265358979\n"
+      "camera: {eye: [0, 0, -0.2], target: %s, up: [0, 1, 0], fov: 2, inside: true}\n"
+      "lights: [{name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1.0e-9}]\n"
+      "objects:\n- {name: water, shape: water, size: [9, 9, 0.41], material: water}\n"
+      "- {name: bottom, shape: rectangle, width: 8, height: 8, reflectance: %.9g, transform: "
+      "[{translate: [0, 0, -0.4]}]}\n"
+      "- {name: ceiling, shape: rectangle, width: 9, height: 9, reflectance: 1, transform: "
+      "[{translate: [0, 0, 1]}]}\n",
+      target, bottom));
+  const abbe_render_desc desc =
+      FIELDS(.width = 16, .height = 16, .photons = 16, .map_size = 64, .min_nm = 587, .max_nm = 588,
+             .wavelengths = 1, .space = ABBE_RGB_SPACE_XYZ);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+  OWNED(abbe_image, picture) = picture_of(renderer);
+  return image_sum(&picture, 1) / (16 * 16);
 }
 
 TEST(the_eye_under_water) {

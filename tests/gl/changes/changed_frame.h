@@ -34,11 +34,11 @@ static inline abbe_result change(abbe_renderer *renderer, const abbe_scene *scen
 
 static inline void assert_as_made_anew(abbe_renderer *renderer, const abbe_scene *scene,
                                        const abbe_render_desc *desc, const char *what) {
-  abbe_image kept = {0}, anew = {0}, kept_map = {0}, anew_map = {0};
-  abbe_renderer *other = make_renderer(scene, desc);
+  OWNED(abbe_image, kept) = {0}, anew = {0}, kept_map = {0}, anew_map = {0};
+  HELD(abbe_renderer, other) = make_renderer(scene, desc);
   const abbe_statistics a = draw_frame(renderer), b = draw_frame(other);
-  read_picture(renderer, desc->aovs, &kept);
-  read_picture(other, desc->aovs, &anew);
+  kept = read_picture(renderer, desc->aovs);
+  anew = read_picture(other, desc->aovs);
   assert_int_equal(kept.width * kept.height * kept.channels,
                    anew.width * anew.height * anew.channels);
   for (size_t i = 0; i < kept.width * kept.height * kept.channels; i++)
@@ -48,17 +48,12 @@ static inline void assert_as_made_anew(abbe_renderer *renderer, const abbe_scene
       fail();
     }
   if (abbe_renderer_plan(renderer)->caustics && abbe_renderer_plan(renderer)->reaches[0]) {
-    read_map(renderer, 0, &kept_map);
-    read_map(other, 0, &anew_map);
+    kept_map = map_of(renderer, 0);
+    anew_map = map_of(other, 0);
     assert_same_pixels(&kept_map, &anew_map);
   }
   assert_memory_equal(&a.energy, &b.energy, sizeof a.energy);
   assert_int_equal(a.photons, b.photons);
-  abbe_image_free(&kept);
-  abbe_image_free(&anew);
-  abbe_image_free(&kept_map);
-  abbe_image_free(&anew_map);
-  abbe_renderer_free(other);
 }
 
 /* Of the frame after a change. */

@@ -7,10 +7,9 @@ GROUP(make_context, free_context);
 
 /* Wherever a frame or a change is cancelled, the renderer goes on. */
 TEST(a_cancelled_renderer_goes_on) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_error why = {0};
-  load_text(GLASS_SCENE, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &tiny);
+  OWNED(abbe_scene, scene) = scene_of(GLASS_SCENE);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &tiny);
   abbe_result result = ABBE_CANCELLED;
   int calls = 0;
   for (int most = 1; result == ABBE_CANCELLED && most < 10000; most += 1 + most / 4) {
@@ -37,17 +36,14 @@ TEST(a_cancelled_renderer_goes_on) {
           abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, &hits, &error));
   OK(change(renderer, &scene, &tiny));
   assert_as_made_anew(renderer, &scene, &tiny, "a cancelled change");
-  abbe_renderer_free(renderer);
 }
 
 /* Units of work, counted: what is dispatched, drawn and compiled. */
 /* What the camera's passes alone ask for, cancelled, leaves the light as it is. */
 TEST(a_cancelled_view_keeps_the_light) {
-  OWNED(abbe_scene, scene) = {0};
   int left = 1;
-  load_text(GLASS_SCENE, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &tiny);
-  draw_frame(renderer);
+  OWNED(abbe_scene, scene) = scene_of(GLASS_SCENE);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &tiny);
   abbe_render_desc other = tiny;
   other.aovs = true;
   other.progress = stop_at;
@@ -61,7 +57,6 @@ TEST(a_cancelled_view_keeps_the_light) {
   assert_ran(&s, false, true);
   abbe_renderer_redraw(renderer);
   assert_as_made_anew(renderer, &scene, &other, "a cancelled view");
-  abbe_renderer_free(renderer);
 }
 
 /* The thread's watch is heard by what comes before the first program: planning, and trees. */
@@ -70,12 +65,10 @@ static bool watch_at(void *user) {
 }
 
 TEST(a_watch_ends_a_change) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_result result = ABBE_CANCELLED;
   int calls = 0;
-  load_text(MESH_SCENE, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &tiny);
-  draw_frame(renderer);
+  OWNED(abbe_scene, scene) = scene_of(MESH_SCENE);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &tiny);
   scene.light[0].position[0] += 0.02;
   for (int most = 1; result == ABBE_CANCELLED; most++) {
     int left = most;
@@ -89,7 +82,6 @@ TEST(a_watch_ends_a_change) {
   assert_int_equal(result, ABBE_OK);
   assert_true(calls >= 3);
   assert_as_made_anew(renderer, &scene, &tiny, "a watched change");
-  abbe_renderer_free(renderer);
 }
 
 static struct {
@@ -147,10 +139,9 @@ static void end_count(void) {
  * of a change and the frame after it, from another light on, of another size. */
 TEST(a_cancel_is_heard_soon) {
   enum { MOST_APART = 12, MOST_AFTER = 2 };
-  OWNED(abbe_scene, scene) = {0};
   abbe_error error = {0};
-  load_text(GLASS_SCENE, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &tiny);
+  OWNED(abbe_scene, scene) = scene_of(GLASS_SCENE);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &tiny);
   abbe_render_desc watched = tiny;
   watched.progress = stop_counted;
   begin_count();
@@ -170,5 +161,4 @@ TEST(a_cancel_is_heard_soon) {
   end_count();
   watched.progress = NULL;
   assert_as_made_anew(renderer, &scene, &watched, "cancelled changes");
-  abbe_renderer_free(renderer);
 }

@@ -17,10 +17,9 @@ GROUP(make_context, free_context);
 
 /* What each kind of change runs. */
 TEST(a_change_runs_what_depends_on_it) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(GLASS_SCENE, &scene);
+  OWNED(abbe_scene, scene) = scene_of(GLASS_SCENE);
   abbe_render_desc desc = tiny;
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
   abbe_statistics s = draw_frame(renderer);
   assert_ran(&s, true, true);
   s = draw_frame(renderer);
@@ -56,15 +55,12 @@ TEST(a_change_runs_what_depends_on_it) {
     if (i == 2) assert_near(s.energy.reached, 0.5 * energy, 1e-12 * energy);
     assert_as_made_anew(renderer, &scene, &desc, cases[i].what);
   }
-  abbe_renderer_free(renderer);
 }
 
 /* A camera that looks away sees no refractor: its pass, and its buffers, come and go. */
 TEST(what_the_camera_sees_comes_and_goes) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(GLASS_SCENE, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &tiny);
-  draw_frame(renderer);
+  OWNED(abbe_scene, scene) = scene_of(GLASS_SCENE);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &tiny);
   for (int turn = 0; turn < 3; turn++) {
     scene.camera.target[0] = turn == 1 ? -3 : 0;
     scene.camera.target[1] = turn == 1 ? -0.5 : 0;
@@ -72,16 +68,14 @@ TEST(what_the_camera_sees_comes_and_goes) {
     assert_true(abbe_renderer_plan(renderer)->camera_sees_refractor == (turn != 1));
     assert_as_made_anew(renderer, &scene, &tiny, "a turn of the camera");
   }
-  abbe_renderer_free(renderer);
 }
 
 /* What all powers are measured by goes by the greatest of lights, ambient light and background. */
 TEST(the_unit_of_power_comes_and_goes) {
   static const double powers[] = {1e-20, 1e-20, 1e-20, 1, 1}, background[] = {0, 0.1, 0, 0, 1e30};
-  OWNED(abbe_scene, scene) = {0};
-  load_text(GLASS_SCENE, &scene);
+  OWNED(abbe_scene, scene) = scene_of(GLASS_SCENE);
   scene.ambient = scene.background = 0;
-  abbe_renderer *renderer = make_renderer(&scene, &tiny);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &tiny);
   for (size_t i = 0; i < sizeof powers / sizeof *powers; i++) {
     scene.light[0].power = powers[i];
     scene.background = background[i];
@@ -94,23 +88,19 @@ TEST(the_unit_of_power_comes_and_goes) {
   const abbe_statistics s = draw_frame(renderer);
   assert_ran(&s, false, true);
   assert_as_made_anew(renderer, &scene, &other, "another space");
-  abbe_renderer_free(renderer);
 }
 
 /* Watched and not, with more wavelengths than a pixel's coarse bands. */
 TEST(a_watched_frame_is_the_same) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_image, alone) = {0};
   OWNED(abbe_image, watched) = {0};
   int left = 1 << 30;
-  load_text(GLASS_SCENE, &scene);
+  OWNED(abbe_scene, scene) = scene_of(GLASS_SCENE);
   abbe_render_desc desc = tiny;
   desc.wavelengths = 12;
   desc.width = 200; /* some tiles of the rasteriser's */
   desc.height = 140;
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, &alone);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+  OWNED(abbe_image, alone) = picture_of(renderer);
   for (int turn = 0; turn < 2; turn++) { /* then of a camera that sees no refractor */
     if (turn == 1) scene.camera.target[0] = -3, scene.camera.target[1] = -0.5;
     OK(change(renderer, &scene, &desc));
@@ -118,29 +108,23 @@ TEST(a_watched_frame_is_the_same) {
     OK(abbe_renderer_frame(renderer, stop_at, &left, NULL, &error));
     assert_as_made_anew(renderer, &scene, &desc, "a watched frame");
     if (turn == 1) continue;
-    read_picture(renderer, false, &watched);
+    watched = picture_of(renderer);
     assert_same_pixels(&alone, &watched);
   }
-  abbe_renderer_free(renderer);
 }
 
 /* The scene that cannot be planned leaves the renderer as it was. */
 TEST(a_refused_change_changes_nothing) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_image, before) = {0};
-  OWNED(abbe_image, after) = {0};
-  load_text(GLASS_SCENE, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &tiny);
-  draw_frame(renderer);
-  read_picture(renderer, false, &before);
+  OWNED(abbe_scene, scene) = scene_of(GLASS_SCENE);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &tiny);
+  OWNED(abbe_image, before) = picture_of(renderer);
   abbe_render_desc wrong = tiny;
   wrong.photons = ABBE_RENDER_MAX_PHOTONS + 1;
   assert_int_equal(change(renderer, &scene, &wrong), ABBE_INVALID_ARGUMENT);
   const abbe_statistics s = draw_frame(renderer);
   assert_ran(&s, false, false);
-  read_picture(renderer, false, &after);
+  OWNED(abbe_image, after) = picture_of(renderer);
   assert_same_pixels(&before, &after);
-  abbe_renderer_free(renderer);
 }
 
 static unsigned dice_state;
@@ -203,11 +187,10 @@ static const char *change_anything(abbe_scene *scene, abbe_render_desc *desc, bo
 }
 
 static void walk_at_random(const char *text, unsigned seed, int steps, bool sizes) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_render_desc desc = tiny;
   dice_state = seed;
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
   for (int step = 0; step < steps; step++) {
     const char *what = change_anything(&scene, &desc, sizes);
     if (dice(3) == 0) what = change_anything(&scene, &desc, sizes); /* two at a time */
@@ -218,26 +201,22 @@ static void walk_at_random(const char *text, unsigned seed, int steps, bool size
     assert_int_equal(change(renderer, &scene, &desc), planned);
     if (planned == ABBE_OK && dice(3) > 0) assert_as_made_anew(renderer, &scene, &desc, what);
   }
-  abbe_renderer_free(renderer);
 }
 
 TEST(random_changes_of_a_solid) {
-  walk_at_random(GLASS_SCENE, 1, 20, true);
+  walk_at_random(GLASS_SCENE, 1, all_cases() ? 20 : 12, true);
 }
 
 /* Fewer than a solid's: the shaders of meshes take llvmpipe seconds to compile. */
 TEST(random_changes_of_meshes) {
-  walk_at_random(MESH_SCENE, 2, 8, false);
+  walk_at_random(MESH_SCENE, 2, all_cases() ? 8 : 5, false);
 }
 
 /* From one scene to another and back, and to the passes of published methods. */
 TEST(another_scene_is_a_change_too) {
-  OWNED(abbe_scene, solid) = {0};
-  OWNED(abbe_scene, mesh) = {0};
-  load_text(GLASS_SCENE, &solid);
-  load_text(MESH_SCENE, &mesh);
-  abbe_renderer *renderer = make_renderer(&solid, &tiny);
-  draw_frame(renderer);
+  OWNED(abbe_scene, solid) = scene_of(GLASS_SCENE);
+  OWNED(abbe_scene, mesh) = scene_of(MESH_SCENE);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&solid, &tiny);
   OK(change(renderer, &mesh, &tiny));
   assert_as_made_anew(renderer, &mesh, &tiny, "another scene");
   static const abbe_profile published[] = {ABBE_PROFILE_THESIS, ABBE_PROFILE_SHAH2007};
@@ -251,5 +230,4 @@ TEST(another_scene_is_a_change_too) {
   }
   OK(change(renderer, &solid, &tiny));
   assert_as_made_anew(renderer, &solid, &tiny, "published profiles");
-  abbe_renderer_free(renderer);
 }

@@ -93,8 +93,7 @@ static void need_texture(GLuint name, GLbitfield barrier) {
 
 /* Whether the program's own text declares the block so that it is never written. */
 static bool is_read_only(GLuint of, const char *name) {
-  char pattern[128];
-  snprintf(pattern, sizeof pattern, "buffer %s ", name);
+  const char *pattern = printed("buffer %s ", name);
   for (int i = 0; i < 4 && shaders[of][i] != 0; i++) {
     const char *source = text[shaders[of][i]];
     for (const char *at = source; (at = strstr(at, pattern)) != NULL; at++) {

@@ -3,20 +3,18 @@
  * is recorded, with what each program declares. A frame is drawn three times, for buffers are used
  * again. With --long also the programs that a GPU takes. */
 #include "tests/gl/frame.h"
+
 #include "tests/gl/device/recorded_gl.h"
 
 static void draw_three(const char *file) {
   abbe_scene scene = {0};
-  abbe_image picture = {0};
-  char path[512];
-  snprintf(path, sizeof path, ABBE_SOURCE_DIR "/scenes/%s.yaml", file);
+  const char *path = printed(ABBE_SOURCE_DIR "/scenes/%s.yaml", file);
   forget();
   make_context();
   OK(abbe_scene_load(path, NULL, &scene, &error));
   abbe_renderer *renderer = make_renderer(&scene, &small_frame);
   for (int i = 0; i < 3; i++) draw_frame(renderer);
-  read_picture(renderer, true, &picture);
-  abbe_image_free(&picture);
+  OWNED(abbe_image, picture) = aovs_of(renderer);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
   free_context();

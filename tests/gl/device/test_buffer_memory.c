@@ -31,11 +31,9 @@ static void finish(void) {
   waits++;
 }
 
-static const abbe_gl gl = {.GetIntegerv = get_integer,
-                           .GetStringi = get_string,
-                           .BindBuffer = bind_buffer,
-                           .BufferData = buffer_data,
-                           .Finish = finish};
+static const abbe_gl gl =
+    FIELDS(.GetIntegerv = get_integer, .GetStringi = get_string, .BindBuffer = bind_buffer,
+           .BufferData = buffer_data, .Finish = finish);
 
 static abbe_buffer_memory begun(const char *name, bool software) {
   abbe_buffer_memory m = {0};
@@ -54,10 +52,9 @@ TEST(nothing_is_lent_where_it_does_not_serve) {
                      gpu = begun("GL_AMD_pinned_memory", false);
   assert_false(abbe_buffer_memory_lend(&without, &gl, ABBE_MEMORY_LEAST, 1));
   assert_false(abbe_buffer_memory_lend(&gpu, &gl, ABBE_MEMORY_LEAST, 1));
-  abbe_buffer_memory m = begun("GL_AMD_pinned_memory", true);
+  OWNED(abbe_buffer_memory, m) = begun("GL_AMD_pinned_memory", true);
   assert_false(abbe_buffer_memory_lend(&m, &gl, ABBE_MEMORY_LEAST - 1, 1));
   assert_false(abbe_buffer_memory_lend(&m, &gl, SIZE_MAX, 1));
-  abbe_buffer_memory_free(&m);
 }
 
 TEST(what_comes_back_is_lent_again) {
@@ -100,12 +97,11 @@ TEST(what_comes_back_is_lent_again) {
 /* More than stays goes back; untouched pages are no memory. */
 TEST(little_is_kept) {
   const size_t size = ABBE_MEMORY_UNUSED / 2;
-  abbe_buffer_memory m = begun("GL_AMD_pinned_memory", true);
+  OWNED(abbe_buffer_memory, m) = begun("GL_AMD_pinned_memory", true);
   const abbe_gpu_store none = {0};
   for (GLuint i = 1; i <= 3; i++) assert_true(abbe_buffer_memory_lend(&m, &gl, size, i));
   abbe_buffer_memory_sweep(&m, &gl, &none);
   size_t kept = 0;
   for (size_t i = 0; i < ABBE_MEMORY_BLOCKS; i++) kept += m.block[i].size;
   assert_true(kept > 0 && kept <= ABBE_MEMORY_UNUSED);
-  abbe_buffer_memory_free(&m);
 }

@@ -36,12 +36,8 @@ static void write_defines(unsigned bits, char *out, size_t size) {
 }
 
 static void compiles(const abbe_program_stage *stages, size_t count, const char *defines) {
-  abbe_error error = {0};
   GLuint program = 0;
-  abbe_result result =
-      abbe_program_make(abbe_context_gl(context), stages, count, defines, &program, &error);
-  if (result != ABBE_OK) print_error("%s\n", error.text);
-  assert_int_equal(result, ABBE_OK);
+  OK(abbe_program_make(abbe_context_gl(context), stages, count, defines, &program, &error));
   abbe_context_gl(context)->DeleteProgram(program);
 }
 

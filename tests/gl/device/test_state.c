@@ -238,7 +238,7 @@ typedef struct taken {
   abbe_renderer_hits hits;
 } taken;
 
-static void free_taken(taken *t) {
+static void taken_free(taken *t) {
   abbe_image_free(&t->picture);
   abbe_image_free(&t->map);
   abbe_image_free(&t->bands);
@@ -260,8 +260,8 @@ static void take(const abbe_scene *scene, const abbe_render_desc *desc, bool awk
   ENTRY("make", OK(abbe_renderer_make(context, scene, desc, &renderer, &error)));
   ENTRY("frame", draw_frame(renderer));
   if (!thesis) ENTRY("baseline", OK(abbe_renderer_baseline(renderer, &ms, &error)));
-  ENTRY("read", read_picture(renderer, true, &out->picture));
-  ENTRY("read_map", read_map(renderer, 0, &out->map));
+  ENTRY("read", out->picture = aovs_of(renderer));
+  ENTRY("read_map", out->map = map_of(renderer, 0));
   if (!thesis) {
     ENTRY("read_map_bands", OK(abbe_renderer_read_map_bands(renderer, 0, 4, &out->bands, &error)));
     ENTRY("read_hits", OK(abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, &out->hits, &error)));
@@ -280,11 +280,9 @@ static void assert_alike(const abbe_image *a, const abbe_image *b) {
 }
 
 static void assert_same_in_any_state(const char *text, const abbe_render_desc *desc) {
-  OWNED(abbe_scene, scene) = {0};
-  taken calm = {0}, awkward = {0};
-  load_text(text, &scene);
-  take(&scene, desc, false, &calm);
-  take(&scene, desc, true, &awkward);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  FILLED(taken, calm, take(&scene, desc, false, &calm));
+  FILLED(taken, awkward, take(&scene, desc, true, &awkward));
   if (abbe_method_of(desc->profile)->own_passes) {
     assert_alike(&awkward.picture, &calm.picture);
     assert_alike(&awkward.map, &calm.map);
@@ -296,8 +294,6 @@ static void assert_same_in_any_state(const char *text, const abbe_render_desc *d
     assert_int_equal(a->count, b->count);
     assert_memory_equal(a->at, b->at, a->count * a->slots * a->samples * 4 * sizeof *a->at);
   }
-  free_taken(&calm);
-  free_taken(&awkward);
 }
 
 static const abbe_render_desc tiny = {

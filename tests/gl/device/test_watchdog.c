@@ -103,16 +103,13 @@ abbe_result __wrap_abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *e
 }
 
 static void draw(const char *file, abbe_image *picture, abbe_image *map) {
-  OWNED(abbe_scene, scene) = {0};
-  char path[512];
-  snprintf(path, sizeof path, ABBE_SOURCE_DIR "/scenes/%s.yaml", file);
-  OK(abbe_scene_load(path, NULL, &scene, &error));
-  abbe_renderer *renderer = make_renderer(&scene, &frame);
+  MADE(abbe_scene, scene,
+       abbe_scene_load(printed(ABBE_SOURCE_DIR "/scenes/%s.yaml", file), NULL, &scene, &error));
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &frame);
   dispatches = most_seen = screen_seen = part_seen = things_seen = 0;
   draw_frame(renderer);
-  read_picture(renderer, false, picture);
-  read_map(renderer, 0, map);
-  abbe_renderer_free(renderer);
+  *picture = picture_of(renderer);
+  *map = map_of(renderer, 0);
 }
 
 /* Beams add up in the order in which threads have listed them, which is another each time. */

@@ -29,14 +29,11 @@ static size_t draw(const abbe_scene *scene, size_t adaptive, abbe_image *out) {
   abbe_render_desc desc = plain;
   desc.adaptive = adaptive > 0 ? adaptive : 1;
   desc.supersample = adaptive > 0 ? 1 : 4;
-  abbe_renderer *renderer = make_renderer(scene, &desc);
+  HELD(abbe_renderer, renderer) = make_renderer(scene, &desc);
   const abbe_statistics statistics = draw_frame(renderer);
   assert_true(abbe_statistics_ran(&statistics, ABBE_PASS_EYE_ADAPTIVE) == (adaptive > 1));
-  read_picture(renderer, true, out);
-  const size_t listed =
-      adaptive > 1 ? abbe_gpu_read_count(&renderer->gpu, renderer->adaptive.samples) : 0;
-  abbe_renderer_free(renderer);
-  return listed;
+  *out = aovs_of(renderer);
+  return adaptive > 1 ? abbe_gpu_read_count(&renderer->gpu, renderer->adaptive.samples) : 0;
 }
 
 /* What is left of a polygon on the side of a line where n . p <= w. */
@@ -98,9 +95,8 @@ GROUP(make_context, free_context);
 
 /* Of a pixel at an edge the mean is that of what it covers, as near as so many rays can tell. */
 TEST(an_edge_is_covered) {
-  OWNED(abbe_scene, scene) = {0};
   double mean[3], worst[3];
-  load_text(FROM_ABOVE SUN_ABOVE TURNED_SQUARE, &scene);
+  OWNED(abbe_scene, scene) = scene_of(FROM_ABOVE SUN_ABOVE TURNED_SQUARE);
   scene.light[0].power = 1e-6; /* ambient light is what it shows */
   for (size_t i = 0; i < 3; i++) {
     const size_t rays[] = {1, 2, 8};
@@ -117,11 +113,9 @@ TEST(an_edge_is_covered) {
 
 /* What is alike all over asks for nothing, and stays to the bit. */
 TEST(flat_light_is_left_alone) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_image, once) = {0};
   OWNED(abbe_image, more) = {0};
-  load_text(FROM_ABOVE SUN_ABOVE FLOOR, &scene);
-  draw(&scene, 1, &once);
+  OWNED(abbe_scene, scene) = scene_of(FROM_ABOVE SUN_ABOVE FLOOR);
+  FILLED(abbe_image, once, draw(&scene, 1, &once));
   assert_int_equal(draw(&scene, 4, &more), 0);
   assert_same_pixels(&once, &more);
 }
@@ -139,9 +133,8 @@ static void measure_squares(const abbe_image *a, const abbe_image *b, const abbe
 /* The picture and what it is made of come nearer to those of 16 samples a pixel; the parts are
  * still the whole. */
 static void assert_nearer(const char *text, double most_left) {
-  OWNED(abbe_scene, scene) = {0};
-  abbe_image once = {0}, more = {0}, fine = {0};
-  load_text(text, &scene);
+  OWNED(abbe_image, once) = {0}, more = {0}, fine = {0};
+  OWNED(abbe_scene, scene) = scene_of(text);
   scene.ambient = scene.background = 0;
   draw(&scene, 0, &fine);
   draw(&scene, 1, &once);
@@ -162,9 +155,6 @@ static void assert_nearer(const char *text, double most_left) {
     if (receiver && scene.object_count == 1)
       assert_near((double)p[1], (double)(p[5] + p[8]), 1e-5 * (double)p[1]);
   }
-  abbe_image_free(&once);
-  abbe_image_free(&more);
-  abbe_image_free(&fine);
 }
 
 TEST(pictures_come_nearer_to_many_samples) {
@@ -197,15 +187,12 @@ static bool shows_ball(const abbe_scene *scene, size_t x, size_t y) {
 
 /* What lies behind a refractor is none of a ray's that is spread over a sample beside it. */
 TEST(samples_beside_a_refractor_stay) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_image, once) = {0};
-  OWNED(abbe_image, more) = {0};
   size_t beside = 0, changed = 0;
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
   scene.background = 1; /* the floor ends behind it */
   scene.camera.eye[2] = 0.25;
-  draw(&scene, 1, &once);
-  draw(&scene, 4, &more);
+  FILLED(abbe_image, once, draw(&scene, 1, &once));
+  FILLED(abbe_image, more, draw(&scene, 4, &more));
   for (size_t y = 1; y + 1 < SIDE; y++)
     for (size_t x = 1; x + 1 < SIDE; x++) {
       bool near = false;

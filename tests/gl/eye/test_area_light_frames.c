@@ -13,33 +13,21 @@ static double mean_of(const abbe_image *image, const char *name) {
 
 /* Mean Y of the picture, as the renderer draws it. */
 static double drawn(const char *text) {
-  const abbe_render_desc desc = {.width = 8,
-                                 .height = 8,
-                                 .supersample = 1,
-                                 .photons = 128,
-                                 .map_size = 128,
-                                 .light_points = 4,
-                                 .space = ABBE_RGB_SPACE_XYZ};
-  OWNED(abbe_image, picture) = {0};
-  draw_text(text, &desc, &picture);
-  const double seen = mean_of(&picture, "Y");
-  return seen;
+  const abbe_render_desc desc =
+      FIELDS(.width = 8, .height = 8, .supersample = 1, .photons = 128, .map_size = 128,
+             .light_points = 4, .space = ABBE_RGB_SPACE_XYZ);
+  FILLED(abbe_image, picture, draw_text(text, &desc, &picture));
+  return mean_of(&picture, "Y");
 }
 
 static double traced(const char *text) {
-  const abbe_trace_desc desc = {.width = 8,
-                                .height = 8,
-                                .no_map = true,
-                                .photons = 1 << 14,
-                                .threads = 1,
-                                .space = ABBE_RGB_SPACE_XYZ};
-  OWNED(abbe_scene, scene) = {0};
+  const abbe_trace_desc desc = FIELDS(.width = 8, .height = 8, .no_map = true, .photons = 1 << 14,
+                                      .threads = 1, .space = ABBE_RGB_SPACE_XYZ);
   abbe_tracer *tracer = NULL;
-  OWNED(abbe_image, picture) = {0};
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   OK(abbe_tracer_make(&scene, &desc, &tracer, &error));
   for (int i = 0; i < 8; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
-  OK(abbe_tracer_picture(tracer, &picture, &error));
+  MADE(abbe_image, picture, abbe_tracer_picture(tracer, &picture, &error));
   const double seen = mean_of(&picture, "Y");
   abbe_tracer_free(tracer);
   return seen;
@@ -70,19 +58,17 @@ static double irradiance(const lit *l) {
 }
 
 static double lit_by_points(const lit *l) {
-  char size[64], text[1024];
-  snprintf(size, sizeof size,
-           l->height > 0 ? "kind: rectangle, width: %g, height: %g" : "kind: disk, radius: %g",
-           l->width, l->height);
-  snprintf(text, sizeof text,
-           "materials: glass.yaml\n"
-           "camera: {eye: [%.9g, 0, %.9g], target: [0, 0, 0], up: [0, 1, 0], fov: 0.1}\n"
-           "lights: [{name: panel, %s, position: [%.9g, 0, %.9g], direction: [0, 0, -1], radiance: "
-           "1}]\nobjects:\n- {name: floor, shape: rectangle, width: 9, height: 9, reflectance: 1, "
-           "transform: [{rotate: {axis: [0, 1, 0], angle: %d}}]}\n",
-           l->wall ? 0.4 * l->above : 0.1 * l->above, l->wall ? 0.1 * l->above : 0.4 * l->above,
-           size, l->aside, l->above, l->wall ? 90 : 0);
-  return drawn(text);
+  const char *size =
+      printed(l->height > 0 ? "kind: rectangle, width: %g, height: %g" : "kind: disk, radius: %g",
+              l->width, l->height);
+  return drawn(printed(
+      "materials: glass.yaml\n"
+      "camera: {eye: [%.9g, 0, %.9g], target: [0, 0, 0], up: [0, 1, 0], fov: 0.1}\n"
+      "lights: [{name: panel, %s, position: [%.9g, 0, %.9g], direction: [0, 0, -1], radiance: "
+      "1}]\nobjects:\n- {name: floor, shape: rectangle, width: 9, height: 9, reflectance: 1, "
+      "transform: [{rotate: {axis: [0, 1, 0], angle: %d}}]}\n",
+      l->wall ? 0.4 * l->above : 0.1 * l->above, l->wall ? 0.1 * l->above : 0.4 * l->above, size,
+      l->aside, l->above, l->wall ? 90 : 0));
 }
 
 GROUP(make_context, free_context);

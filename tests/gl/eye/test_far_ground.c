@@ -100,7 +100,7 @@ static void turn(const setting *s, const double p[3], double by, double out[3]) 
 
 static void draw(const setting *s, abbe_image *out) {
   static const double up[3] = {0, 0, 1}, target[3] = {0.2, 0, 0.2};
-  char text[2048], step[3][256];
+  char step[3][256];
   double eye[3], to[3], above[3], light[3];
   turn(s, s->eye, s->unit, eye);
   turn(s, target, s->unit, to);
@@ -112,10 +112,9 @@ static void draw(const setting *s, abbe_image *out) {
         step[i], sizeof step[i],
         "transform: [{translate: [%.17g, %.17g, %.17g]}, {rotate: {axis: [1, 0, 0], angle: %g}}]",
         at[i][0] * s->unit, at[i][1] * s->unit, at[i][2] * s->unit, s->tilt);
-  snprintf(
-      text, sizeof text,
-      "materials: glass.yaml\ncamera: {eye: [%.17g, %.17g, %.17g], target: [%.17g, %.17g, %.17g], "
-      "up: [%.17g, %.17g, %.17g], fov: 45}\n"
+  const char *text = printed(
+      "materials: glass.yaml\ncamera: {eye: [%.17g, %.17g, %.17g], target: [%.17g, %.17g, "
+      "%.17g], up: [%.17g, %.17g, %.17g], fov: 45}\n"
       "lights:\n- {name: light, kind: %s: [%.17g, %.17g, %.17g], %s: %.17g}\nobjects:\n"
       "- {name: ball, shape: sphere, radius: %.17g, mirror: %g, %s}\n"
       "- {name: card, shape: rectangle, width: %.17g, height: %.17g, reflectance: %g, %s}\n"
@@ -133,10 +132,9 @@ static void draw(const setting *s, abbe_image *out) {
 /* Of pixels that no edge crosses, by a pixel to each side. What the ball mirrors lands elsewhere,
  * and is a hundredth. */
 static void check(const setting *s) {
-  abbe_image picture;
   size_t seen = 0, dark = 0, mirrored = 0, wrong = 0;
   double worst = 0;
-  draw(s, &picture);
+  FILLED(abbe_image, picture, draw(s, &picture));
   for (int i = 0; i < SIDE * SIDE; i++) {
     const double x = i % SIDE + 0.5, y = i / SIDE + 0.5;
     int mark, other;
@@ -155,12 +153,11 @@ static void check(const setting *s) {
     wrong += !(fabs(drawn - exact) < most);
     if (fabs(drawn - exact) > worst) worst = fabs(drawn - exact);
   }
-  abbe_image_free(&picture);
   if (wrong > 0)
-    print_error(
-        "ground of %g units of %g m, turned by %g degrees, %s, eye at %g: %zu of %zu pixels "
-        "are wrong, by up to %g\n",
-        s->ground, s->unit, s->tilt, s->far ? "sun" : "lamp", s->eye[1], wrong, seen, worst);
+    print_error("ground of %g units of %g m, turned by %g degrees, %s, eye at %g: %zu of %zu "
+                "pixels are wrong, by up to %g\n",
+                s->ground, s->unit, s->tilt, s->far ? "sun" : "lamp", s->eye[1], wrong, seen,
+                worst);
   assert_int_equal(wrong, 0);
   assert_true(seen > 2500 && dark > 20 && mirrored > 20);
 }

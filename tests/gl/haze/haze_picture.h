@@ -6,21 +6,17 @@
 
 /* Mean of each channel of a picture of 16 by 16 pixels. */
 static inline void mean_of(const char *text, const abbe_render_desc *asked, double out[3]) {
-  OWNED(abbe_scene, scene);
-  OWNED(abbe_image, picture);
   abbe_render_desc desc = *asked;
   desc.width = desc.height = 16;
   desc.supersample = 1;
   desc.map_size = 64;
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, &picture);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+  OWNED(abbe_image, picture) = picture_of(renderer);
   for (size_t k = 0; k < 3; k++) {
     out[k] = 0;
     for (size_t i = 0; i < 256; i++) out[k] += (double)picture.data[i * picture.channels + k] / 256;
   }
-  abbe_renderer_free(renderer);
 }
 
 /* The green one, in Rec.709: of white light Y. */

@@ -79,15 +79,15 @@ TEST(a_lamp_behind_glass_in_the_mist) {
 }
 
 TEST(a_lamp_in_a_mirror) {
-  assert_lamp("in a mirror",
-              LAMP("eye: [-1.5, -0.5, 0], target: [-1.5, 0, 0]",
-                   "- {name: spot, shape: rectangle, width: 0.004, height: 0.004, reflectance: 0, "
-                   "transform: [{rotate: {axis: [1, 0, 0], angle: 90}}, {translate: [-1.5, 1, "
-                   "0]}]}\n"
-                   "- {name: mirror, shape: rectangle, width: 0.2, height: 0.2, mirror: 0.8, "
-                   "transform: [{rotate: {axis: [0, 1, 0], angle: 90}}, {rotate: {axis: [0, 0, 1], "
-                   "angle: -45}}, {translate: [-1.5, 0, 0]}]}\n"),
-              0.8);
+  assert_lamp(
+      "in a mirror",
+      LAMP("eye: [-1.5, -0.5, 0], target: [-1.5, 0, 0]",
+           "- {name: spot, shape: rectangle, width: 0.004, height: 0.004, reflectance: 0, "
+           "transform: [{rotate: {axis: [1, 0, 0], angle: 90}}, {translate: [-1.5, 1, 0]}]}\n"
+           "- {name: mirror, shape: rectangle, width: 0.2, height: 0.2, mirror: 0.8, transform: "
+           "[{rotate: {axis: [0, 1, 0], angle: 90}}, {rotate: {axis: [0, 0, 1], angle: -45}}, "
+           "{translate: [-1.5, 0, 0]}]}\n"),
+      0.8);
 }
 
 /* The sun from above, off a mirror along the mist, as in tests/gl/beams/test_beam_list.c; the eye
@@ -112,9 +112,8 @@ TEST(a_lamp_in_a_mirror) {
 
 TEST(a_beam_in_a_mirror) {
   static const char *const panes[] = {
-      BEAM(""),
-      BEAM("- {name: pane, shape: box, size: [0.2, 0.02, 0.2], material: flat, transform: "
-           "[{translate: [0.4, -0.3, 0]}]}\n")};
+      BEAM(""), BEAM("- {name: pane, shape: box, size: [0.2, 0.02, 0.2], material: flat, "
+                     "transform: [{translate: [0.4, -0.3, 0]}]}\n")};
   const double known =
       0.5 * 0.8 * exp(-1.1 * 0.2) * 0.8 * abbe_medium_phase(0.4, 0) * -expm1(-1.1 * 0.1) / 1.1;
   for (int i = 0; i < 2; i++) {

@@ -20,10 +20,9 @@ TEST(a_slab_in_the_sun) {
   const double turned = sin(sun) * sin(view) - m0 * m;
   const double exact = 0.8 / 1.1 * abbe_medium_phase(0.4, turned) * m0 / (m0 + m) *
                        (1 - exp(-1.1 * (1 / m0 + 1 / m)));
-  const double drawn =
-      green_of(VIEW("lights: [{name: sun, kind: directional, direction: [0.5, 0, -0.8660254], "
-                    "irradiance: 1}]\n"),
-               64);
+  const double drawn = green_of(VIEW("lights: [{name: sun, kind: directional, direction: [0.5, 0, "
+                                     "-0.8660254], irradiance: 1}]\n"),
+                                64);
   assert_near(drawn / exact, 1, 4e-3);
   const double left = green_of(VIEW("background: 1\nlights: [{name: sun, kind: directional, "
                                     "direction: [0.5, 0, -0.8660254], irradiance: 1.0e-9}]\n"),
@@ -37,7 +36,6 @@ TEST(a_lamp_in_mist) {
       "kind: point, position: [0, 0.2, 0], intensity: 1",
       "kind: spot, position: [0, 0.2, 0], direction: [0, -1, 0], cone: 40, intensity: 1"};
   for (int i = 0; i < 2; i++) {
-    char text[1024];
     double exact = 0;
     enum { PARTS = 20000 };
     for (int k = 0; k < PARTS; k++) {
@@ -46,15 +44,20 @@ TEST(a_lamp_in_mist) {
       exact += 2.0 / PARTS * 0.4 * abbe_medium_phase(0.7, along / distance) *
                exp(-0.5 * (t + distance)) / (distance * distance);
     }
-    snprintf(text, sizeof text,
-             "camera: {eye: [-1.5, 0, 0], target: [0, 0, 0], fov: 0.5}\n"
-             "lights: [{name: lamp, %s}]\n"
-             "medium: {scattering: 0.4, absorption: 0.1, g: 0.7, box: [[-1, -1, -1], [1, 1, 1]]}\n"
-             "objects: [{name: far off, shape: rectangle, width: 9, height: 9, reflectance: 0,\n"
-             "           transform: [{rotate: {axis: [0, 1, 0], angle: 90}}, "
-             "{translate: [5, 0, 0]}]}]\n",
-             lamps[i]);
-    assert_near(green_of(text, 64) / exact, 1, 4e-3);
+    assert_near(
+        green_of(
+            printed(
+                "camera: {eye: [-1.5, 0, 0], target: [0, 0, 0], fov: 0.5}\n"
+                "lights: [{name: lamp, %s}]\n"
+                "medium: {scattering: 0.4, absorption: 0.1, g: 0.7, box: [[-1, -1, -1], [1, 1, "
+                "1]]}\n"
+                "objects: [{name: far off, shape: rectangle, width: 9, height: 9, reflectance: 0,\n"
+                "           transform: [{rotate: {axis: [0, 1, 0], angle: 90}}, {translate: [5, 0, "
+                "0]}]}]\n",
+                lamps[i]),
+            64) /
+            exact,
+        1, 4e-3);
   }
 }
 
@@ -96,23 +99,16 @@ TEST(a_shaft_under_still_water) {
 TEST(a_fan_without_stripes) {
   enum { W = 80, H = 60, FEW = 7, MANY = 31 };
   static const double middle[3] = {0.105, 0.15, 0.03};
-  abbe_scene scene;
   abbe_image picture[2];
-  load_file(ABBE_SOURCE_DIR "/scenes/mist/prism.yaml", &scene);
+  OWNED(abbe_scene, scene) = shipped_scene("mist/prism");
   memcpy(scene.camera.target, middle, sizeof middle);
   scene.camera.fov_y_rad = 16 * ABBE_PI / 180;
   for (int i = 0; i < 2; i++) {
-    const abbe_render_desc desc = {.width = W,
-                                   .height = H,
-                                   .photons = 96,
-                                   .map_size = 128,
-                                   .wavelengths = i == 0 ? FEW : MANY,
-                                   .supersample = 1,
-                                   .space = ABBE_RGB_SPACE_XYZ};
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
-    draw_frame(renderer);
-    read_picture(renderer, false, &picture[i]);
-    abbe_renderer_free(renderer);
+    const abbe_render_desc desc =
+        FIELDS(.width = W, .height = H, .photons = 96, .map_size = 128,
+               .wavelengths = i == 0 ? FEW : MANY, .supersample = 1, .space = ABBE_RGB_SPACE_XYZ);
+    HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+    picture[i] = picture_of(renderer);
   }
   double square = 0, apart = 0;
   for (size_t i = 0; i < W * H * picture[0].channels; i++) {
@@ -122,7 +118,6 @@ TEST(a_fan_without_stripes) {
     apart += (a - b) * (a - b);
   }
   for (int i = 0; i < 2; i++) abbe_image_free(&picture[i]);
-  abbe_scene_free(&scene);
   print_message("relative RMSE of 7 wavelengths to 31: %.4f\n", sqrt(apart / square));
   assert_true(sqrt(apart / square) < 0.1);
 }

@@ -8,24 +8,17 @@
  * NULL. */
 static abbe_ledger draw(const char *name, size_t wavelengths, abbe_fill fill,
                         abbe_map_layout *layout, abbe_image *map) {
-  abbe_scene scene = {0};
-  load_shipped(name, &scene);
+  OWNED(abbe_scene, scene) = shipped_scene(name);
   look_aside(&scene);
-  abbe_render_desc desc = {.width = 16,
-                           .height = 16,
-                           .photons = 64,
-                           .map_size = 64,
-                           .fill = fill,
-                           .wavelengths = wavelengths};
+  abbe_render_desc desc = FIELDS(.width = 16, .height = 16, .photons = 64, .map_size = 64,
+                                 .fill = fill, .wavelengths = wavelengths);
   static const abbe_map_layout unknown;
   const bool given = layout != NULL && memcmp(layout, &unknown, sizeof unknown) != 0;
   if (given) desc.map_layout = layout;
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
   const abbe_statistics statistics = draw_frame(renderer);
-  if (map != NULL) read_map(renderer, 0, map);
+  if (map != NULL) *map = map_of(renderer, 0);
   if (layout != NULL && !given) abbe_renderer_map_layout(renderer, 0, layout);
-  abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
   return statistics.energy;
 }
 
@@ -86,13 +79,11 @@ static double passed(const abbe_material *material, double lambda_nm, double thi
 TEST(a_pane_leaves_what_the_law_says) {
   static const size_t counts[] = {7, 21, 64};
   const double thickness = 0.06;
-  OWNED(abbe_scene, scene) = {0};
-  load_text(
+  OWNED(abbe_scene, scene) = scene_of(
       "materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"
       "lights:\n- {name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1}\n" FLOOR
       "- {name: pane, shape: box, size: [0.2, 0.2, 0.06], material: murk,\n"
-      "   transform: [{translate: [0, 0, 0.2]}]}\n",
-      &scene);
+      "   transform: [{translate: [0, 0, 0.2]}]}\n");
   look_aside(&scene);
   const abbe_illuminant *light = &scene.light[0].illuminant;
   double sum[3] = {0}, white[3] = {0}, band[BANDS] = {0};
@@ -108,20 +99,18 @@ TEST(a_pane_leaves_what_the_law_says) {
   }
   for (size_t i = 0; i < 3; i++) {
     abbe_render_desc desc = small_frame;
-    OWNED(abbe_image, map) = {0};
     desc.wavelengths = counts[i];
     desc.energy_share = 1e-6;
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
     const abbe_ledger l = draw_frame(renderer).energy;
     assert_near(l.deposited / l.reached, sum[1] / white[1], 1e-3);
     assert_true(abbe_ledger_imbalance(&l) < 1e-5);
-    OK(abbe_renderer_read_map_bands(renderer, 0, BANDS, &map, &error));
+    MADE(abbe_image, map, abbe_renderer_read_map_bands(renderer, 0, BANDS, &map, &error));
     const double reached = image_sum(&map, 1) / (l.deposited / l.reached);
     for (size_t c = 0; c < 3; c++)
       assert_near(image_sum(&map, c) / reached, sum[c] / white[1], 2e-3);
     for (size_t k = 0; k < BANDS; k++)
       assert_near(image_sum(&map, 3 + k) / reached, band[k] / white[1], 0.02 * band[k] / white[1]);
-    abbe_renderer_free(renderer);
   }
 }
 
@@ -140,7 +129,7 @@ static double difference(const abbe_image *a, const abbe_image *b) {
 TEST(refined_maps_are_those_of_all_wavelengths) {
   static const char *const names[] = {"gem", "prism"};
   for (size_t i = 0; i < 2; i++) {
-    abbe_image all = {0}, few = {0}, refined = {0}, again = {0};
+    OWNED(abbe_image, all) = {0}, few = {0}, refined = {0}, again = {0};
     abbe_map_layout layout = {0}; /* all maps lie alike: what differs is their light */
     draw(names[i], 200, ABBE_FILL_BRIDGE, &layout, &all);
     draw(names[i], 5, ABBE_FILL_BRIDGE, &layout, &few);
@@ -151,29 +140,24 @@ TEST(refined_maps_are_those_of_all_wavelengths) {
     assert_true(difference(&refined, &all) < 0.15 * difference(&few, &all));
     assert_memory_equal(refined.data, again.data,
                         refined.width * refined.height * refined.channels * sizeof *refined.data);
-    abbe_image_free(&all);
-    abbe_image_free(&few);
-    abbe_image_free(&refined);
-    abbe_image_free(&again);
   }
 }
 
 /* More wavelengths in an interval than in the coarse set, and paths that few of them take: what is
  * read of the coarse hits is the photon's own, in whatever order photons stand. */
 TEST(a_mesh_is_refined_alike_every_time) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_image map[2] = {{0}, {0}};
   abbe_render_desc desc = small_frame;
   desc.width = desc.height = 16;
   desc.photons = 64;
   desc.wavelengths = 28;
-  load_shipped("bunny", &scene);
+  OWNED(abbe_scene, scene) = shipped_scene("bunny");
   look_aside(&scene);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   for (int i = 0; i < 2; i++) {
     abbe_renderer_redraw(renderer);
     draw_frame(renderer);
-    read_map(renderer, 0, &map[i]);
+    map[i] = map_of(renderer, 0);
   }
   abbe_renderer_free(renderer);
   assert_same_pixels(&map[0], &map[1]);

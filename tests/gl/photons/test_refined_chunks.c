@@ -22,15 +22,14 @@ static void assert_balanced(const abbe_ledger *l) {
 }
 
 static void assert_same_light(const char *name, size_t wavelengths, const rooms *r) {
-  OWNED(abbe_scene, scene) = {0};
-  abbe_image map = {0}, kept = {0};
+  abbe_image kept = {0};
   abbe_render_desc desc = {
       .width = 16, .height = 16, .photons = 48, .map_size = 64, .wavelengths = wavelengths};
-  load_shipped(name, &scene);
-  abbe_renderer *ample = make_renderer(&scene, &desc);
+  OWNED(abbe_scene, scene) = shipped_scene(name);
+  HELD(abbe_renderer, ample) = make_renderer(&scene, &desc);
   const abbe_statistics all = draw_frame(ample);
-  read_map(ample, 0, &map);
-  abbe_renderer *scant = make_renderer(&scene, &desc);
+  OWNED(abbe_image, map) = map_of(ample, 0);
+  HELD(abbe_renderer, scant) = make_renderer(&scene, &desc);
   take_rooms(scant, r);
   for (int frame = 0; frame < 3; frame++) { /* that finds out; that knows; that nobody measures */
     abbe_statistics s = all;
@@ -39,15 +38,12 @@ static void assert_same_light(const char *name, size_t wavelengths, const rooms 
       s = draw_frame(scant);
     else
       OK(abbe_renderer_frame(scant, NULL, NULL, NULL, &error));
-    read_map(scant, 0, &kept);
+    kept = map_of(scant, 0);
     assert_same_pixels(&map, &kept);
     assert_memory_equal(&s.energy, &all.energy, sizeof all.energy);
     assert_balanced(&s.energy);
     abbe_image_free(&kept);
   }
-  abbe_image_free(&map);
-  abbe_renderer_free(ample);
-  abbe_renderer_free(scant);
 }
 
 GROUP(make_context, free_context);

@@ -15,44 +15,14 @@ typedef struct row {
 } row;
 
 /* Wavelengths, exits, and hits of a photon. */
-#define COUNTS(wavelengths, exits, hits)                                                           \
-  {                                                                                                \
-    ROW_COUNTS, 0, "", "", {                                                                       \
-      wavelengths, exits, hits                                                                     \
-    }                                                                                              \
-  }
-#define RUNS_OF(item, about, part)                                                                 \
-  {                                                                                                \
-    ROW_RUNS, ABBE_##item, about, part, {                                                          \
-      0                                                                                            \
-    }                                                                                              \
-  }
-#define RESTS_OF(item, about, part)                                                                \
-  {                                                                                                \
-    ROW_RESTS, ABBE_##item, about, part, {                                                         \
-      0                                                                                            \
-    }                                                                                              \
-  }
+#define COUNTS(wavelengths, exits, hits) FIELDS(ROW_COUNTS, 0, "", "", {wavelengths, exits, hits})
+#define RUNS_OF(item, about, part) FIELDS(ROW_RUNS, ABBE_##item, about, part, {0})
+#define RESTS_OF(item, about, part) FIELDS(ROW_RESTS, ABBE_##item, about, part, {0})
 #define RUNS(item, part) RUNS_OF(item, "", part)
 #define RESTS(item, part) RESTS_OF(item, "", part)
-#define GONE(item, about)                                                                          \
-  {                                                                                                \
-    ROW_GONE, ABBE_##item, about, "", {                                                            \
-      0                                                                                            \
-    }                                                                                              \
-  }
-#define NOTE(part)                                                                                 \
-  {                                                                                                \
-    ROW_NOTE, 0, "", part, {                                                                       \
-      0                                                                                            \
-    }                                                                                              \
-  }
-#define END                                                                                        \
-  {                                                                                                \
-    ROW_END, 0, "", "", {                                                                          \
-      0                                                                                            \
-    }                                                                                              \
-  }
+#define GONE(item, about) FIELDS(ROW_GONE, ABBE_##item, about, "", {0})
+#define NOTE(part) FIELDS(ROW_NOTE, 0, "", part, {0})
+#define END FIELDS(ROW_END, 0, "", "", {0})
 
 #define GREY RESTS(CHOICE_RECEIVER_COLOURS, "no dispersed light falls on a receiver in colours")
 #define COLOURED                                                                                   \

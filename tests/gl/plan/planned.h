@@ -12,8 +12,7 @@ static inline void plan_scene(const abbe_scene *scene, const abbe_render_desc *d
 }
 
 static inline void plan_text(const char *text, const abbe_render_desc *desc, abbe_plan *plan) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   plan_scene(&scene, desc, plan);
 }
 
@@ -26,14 +25,12 @@ static inline bool is_noted(const abbe_plan *plan, const char *part) {
 /* The plan of the text is refused so, and the sentence has the part. */
 static inline void refuse_plan(const char *text, const abbe_render_desc *desc, abbe_result expected,
                                const char *part) {
-  abbe_scene scene = {0};
   abbe_plan plan;
   abbe_error error = {0};
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   assert_int_equal(abbe_plan_make(&scene, desc, &plan, &error), expected);
   assert_int_equal(error.code, expected);
   assert_contains(error.text, part);
-  abbe_scene_free(&scene);
 }
 
 #endif

@@ -12,10 +12,8 @@
 #define EYE_ASIDE "materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [-0.6, 0, 0.05]}\n"
 
 static void draw(const abbe_scene *scene, const abbe_render_desc *desc, abbe_image *out) {
-  abbe_renderer *renderer = make_renderer(scene, desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, out);
-  abbe_renderer_free(renderer);
+  HELD(abbe_renderer, renderer) = drawn_renderer(scene, desc);
+  *out = picture_of(renderer);
 }
 
 /* Root of the mean square, relative to the first picture's mean. */
@@ -31,14 +29,11 @@ static double difference(const abbe_image *a, const abbe_image *b) {
 
 static double with_everything(const abbe_scene *scene, size_t exits) {
   abbe_render_desc desc = small_frame;
-  OWNED(abbe_image, planned) = {0};
-  OWNED(abbe_image, all) = {0};
-  draw(scene, &desc, &planned);
+  FILLED(abbe_image, planned, draw(scene, &desc, &planned));
   desc.everything = true;
   desc.exits = exits;
-  draw(scene, &desc, &all);
-  double found = difference(&planned, &all);
-  return found;
+  FILLED(abbe_image, all, draw(scene, &desc, &all));
+  return difference(&planned, &all);
 }
 
 GROUP(make_context, free_context);
@@ -54,9 +49,8 @@ TEST(what_no_fact_asks_for_changes_nothing) {
       CAMERA POINT_LIGHT ASIDE FLOOR HILL BALL("flat"),
   };
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-    OWNED(abbe_scene, scene) = {0};
     if (!all_cases() && i % 2 == 0) continue;
-    load_text(texts[i], &scene);
+    OWNED(abbe_scene, scene) = scene_of(texts[i]);
     double found = with_everything(&scene, 8);
     if (!(found < 1e-3)) fail_msg("scene %zu: %g", i, found);
   }
@@ -76,12 +70,10 @@ TEST(what_the_camera_has_seen_serves_rays) {
 }
 
 TEST(every_switch_is_on) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_plan, plan);
   const abbe_render_desc all = {.everything = true};
-  load_text(CAMERA POINT_LIGHT ASIDE WIDE FLOOR BALL("flat") "environment: {uniform: 0.1}\n",
-            &scene);
-  OK(abbe_plan_make(&scene, &all, &plan, &error));
+  OWNED(abbe_scene, scene) =
+      scene_of(CAMERA POINT_LIGHT ASIDE WIDE FLOOR BALL("flat") "environment: {uniform: 0.1}\n");
+  MADE(abbe_plan, plan, abbe_plan_make(&scene, &all, &plan, &error));
   for (size_t i = 0; i < plan.entry_count; i++) {
     const abbe_plan_entry *entry = &plan.entry[i];
     const bool model = entry->item == ABBE_PASS_RECEIVER_DEPTH || /* other models, other pictures */
@@ -95,12 +87,10 @@ TEST(every_switch_is_on) {
 }
 
 TEST(what_is_asked_for_stays) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_plan, plan);
   const abbe_render_desc all = {
       .everything = true, .wavelengths = 3, .exits = 2, .fill = ABBE_FILL_NONE};
-  load_text(CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat"), &scene);
-  OK(abbe_plan_make(&scene, &all, &plan, &error));
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat"));
+  MADE(abbe_plan, plan, abbe_plan_make(&scene, &all, &plan, &error));
   assert_int_equal(plan.desc.wavelengths, 3);
   assert_int_equal(plan.desc.exits, 2);
   assert_false(plan.fills || abbe_plan_find(&plan, ABBE_PASS_GAP_FILL, 0)->runs);

@@ -68,20 +68,17 @@ static const struct {
 };
 
 static void plan_of(const abbe_scene *scene, const abbe_render_desc *desc, lines *out) {
-  OWNED(abbe_plan, plan);
-  plan_scene(scene, desc, &plan);
+  FILLED(abbe_plan, plan, plan_scene(scene, desc, &plan));
   tell(scene, &plan, out);
 }
 
 static void load_and_plan(const char *text, const abbe_render_desc *desc, lines *out) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   plan_of(&scene, desc, out);
 }
 
 static void load_and_plan_shipped(const char *name, lines *out) {
-  OWNED(abbe_scene, scene) = {0};
-  load_shipped(name, &scene);
+  OWNED(abbe_scene, scene) = shipped_scene(name);
   plan_of(&scene, NULL, out);
 }
 

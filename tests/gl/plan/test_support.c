@@ -5,11 +5,10 @@
 
 TEST(the_thesis_refuses_disks) {
   const abbe_render_desc thesis = {.profile = ABBE_PROFILE_THESIS};
-  OWNED(abbe_scene, scene);
   abbe_plan plan;
-  load_text(CAMERA "lights:\n- {name: panel, kind: disk, position: [0, 0, 0.6], target: [0, 0, 0], "
-                   "radius: 0.1, radiance: 100}\n" FLOOR BALL("flat"),
-            &scene);
+  OWNED(abbe_scene, scene) =
+      scene_of(CAMERA "lights:\n- {name: panel, kind: disk, position: [0, 0, 0.6], target: [0, 0, "
+                      "0], radius: 0.1, radiance: 100}\n" FLOOR BALL("flat"));
   assert_int_equal(scene.light[0].kind, ABBE_LIGHT_DISK);
   assert_near(scene.light[0].radius, 0.1, 0);
   assert_near(scene.light[0].power, 100, 0);
@@ -56,23 +55,19 @@ TEST(layers_refuse_by_name_what_lies_in_a_refractor) {
   for (size_t i = 0; i < sizeof in / sizeof *in; i++)
     refuse_plan(in[i][0], &desc, ABBE_UNSUPPORTED, in[i][1]);
   for (size_t i = 0; i < sizeof beside / sizeof *beside; i++) {
-    OWNED(abbe_scene, scene);
-    OWNED(abbe_plan, plan);
-    load_text(beside[i], &scene);
-    OK(abbe_plan_make(&scene, &desc, &plan, &error));
+    OWNED(abbe_scene, scene) = scene_of(beside[i]);
+    MADE(abbe_plan, plan, abbe_plan_make(&scene, &desc, &plan, &error));
   }
 }
 
 /* By pinholes where nothing else is asked for, and not at all by others. */
 TEST(rough_mirrors_go_by_pinholes) {
-  static const char text[] = CAMERA
-      "environment: {size: 64, uniform: 1}\n" FLOOR
-      "- {name: dull plate, shape: rectangle, width: 1, height: 1, mirror: 0.9, roughness: 0.2, "
-      "transform: [{translate: [0, 0, -1]}]}\n";
-  abbe_scene scene;
-  abbe_plan plan;
-  load_text(text, &scene);
-  OK(abbe_plan_make(&scene, NULL, &plan, &error));
+  static const char text[] =
+      CAMERA "environment: {size: 64, uniform: 1}\n" FLOOR
+             "- {name: dull plate, shape: rectangle, width: 1, height: 1, mirror: 0.9, roughness: "
+             "0.2, transform: [{translate: [0, 0, -1]}]}\n";
+  abbe_scene scene = scene_of(text);
+  MADE(abbe_plan, plan, abbe_plan_make(&scene, NULL, &plan, &error));
   assert_true(plan.rough);
   assert_int_equal(plan.desc.transport, ABBE_TRANSPORT_PINHOLE);
   assert_int_equal(plan.desc.pinholes, ABBE_PLAN_PINHOLES);
@@ -80,13 +75,11 @@ TEST(rough_mirrors_go_by_pinholes) {
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);
   /* What a lamp sends there by a smooth surface is left out, which the plan says. */
-  load_text(CAMERA POINT_LIGHT FLOOR LOOKING_GLASS
-            "- {name: dull plate, shape: rectangle, width: 1, height: 1, mirror: 0.9, roughness: "
-            "0.2, transform: [{translate: [0, 0, -1]}]}\n",
-            &scene);
+  scene = scene_of(CAMERA POINT_LIGHT FLOOR LOOKING_GLASS
+                   "- {name: dull plate, shape: rectangle, width: 1, height: 1, mirror: 0.9, "
+                   "roughness: 0.2, transform: [{translate: [0, 0, -1]}]}\n");
   OK(abbe_plan_make(&scene, NULL, &plan, &error));
   assert_contains(plan.note[0], "comes to a rough mirror through glass");
-  abbe_plan_free(&plan);
   abbe_scene_free(&scene);
   abbe_render_desc desc = {.transport = ABBE_TRANSPORT_PHOTONS};
   refuse_plan(text, &desc, ABBE_UNSUPPORTED, "'dull plate' (line 6) is a rough mirror");
@@ -115,12 +108,9 @@ TEST(a_map_layout_belongs_to_its_light) {
   abbe_view_pad(&view, 0.1);
   abbe_map_layout_make(&view, &layout);
   abbe_render_desc desc = {.map_layout = &layout};
-  abbe_scene scene;
-  abbe_plan plan;
-  load_text(ball, &scene);
-  OK(abbe_plan_make(&scene, &desc, &plan, &error));
+  abbe_scene scene = scene_of(ball);
+  MADE(abbe_plan, plan, abbe_plan_make(&scene, &desc, &plan, &error));
   assert_contains(abbe_plan_find(&plan, ABBE_PASS_SPECTRAL_MAP, 0)->reason, "laid out as asked");
-  abbe_plan_free(&plan);
   abbe_scene_free(&scene);
   refuse_plan(CAMERA POINT_LIGHT FLOOR, &desc, ABBE_INVALID_ARGUMENT, "no refractor");
   refuse_plan(CAMERA SUN FLOOR BALL("flat"), &desc, ABBE_INVALID_ARGUMENT,

@@ -4,8 +4,7 @@
 #include "gl/scene/camera_view.h"
 
 static void fit(const abbe_render_desc *desc, double fov_y_rad, abbe_camera_view *out) {
-  OWNED(abbe_scene, scene) = {0};
-  load_shipped("sphere", &scene);
+  OWNED(abbe_scene, scene) = shipped_scene("sphere");
   scene.camera.fov_y_rad = fov_y_rad;
   abbe_camera_view_fit(&scene, desc, out);
 }

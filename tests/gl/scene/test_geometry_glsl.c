@@ -70,9 +70,7 @@ static void ray_of(int i, double o[3], double d[3]) {
 }
 
 static void run(const char *body) {
-  char text[3072];
-  snprintf(text, sizeof text, "%s%s", rooms, body);
-  GLuint program = glsl_make(gl, text);
+  GLuint program = glsl_make(gl, printed("%s%s", rooms, body));
   glsl_run(gl, program, (const float(*)[8])inputs, RAYS, outputs);
   gl->DeleteProgram(program);
 }
@@ -281,7 +279,6 @@ TEST(views_project) {
     const double forward[3] = {0.1, 0.2, -1}, up[3] = {0, 1, 0};
     abbe_view view;
     float packed[24];
-    char body[1024];
     uint64_t random = 3;
     abbe_view_look(origin, forward, up, s % 2, &view);
     const double half = s % 2 ? r : 0.5, window[4] = {-half, half, -half, 2 * half};
@@ -297,19 +294,17 @@ TEST(views_project) {
       inputs[i][4] = (float)uv[0];
       inputs[i][5] = (float)uv[1];
     }
-    snprintf(body, sizeof body, "%s",
-             "uniform vec4 harness_view[6];\n"
-             "View v() { return View(harness_view[0], harness_view[1], harness_view[2],\n"
-             "                       harness_view[3], harness_view[4], harness_view[5]); }\n"
-             "vec4 f(vec4 a, vec4 b) {\n"
-             "  if (b.z < 0.5) { vec3 q; bool seen = project(v(), a.xyz, q);\n"
-             "    return vec4(q, seen ? 1 : 0); }\n"
-             "  vec3 o, d; view_ray(v(), b.xy, o, d);\n"
-             "  return vec4(d, window_measure(v(), d));\n"
-             "}\n");
-    char text[3072];
-    snprintf(text, sizeof text, "%s%s", rooms, body);
-    GLuint program = glsl_make(gl, text);
+    const char *body = printed(
+        "%s", "uniform vec4 harness_view[6];\n"
+              "View v() { return View(harness_view[0], harness_view[1], harness_view[2],\n"
+              "                       harness_view[3], harness_view[4], harness_view[5]); }\n"
+              "vec4 f(vec4 a, vec4 b) {\n"
+              "  if (b.z < 0.5) { vec3 q; bool seen = project(v(), a.xyz, q);\n"
+              "    return vec4(q, seen ? 1 : 0); }\n"
+              "  vec3 o, d; view_ray(v(), b.xy, o, d);\n"
+              "  return vec4(d, window_measure(v(), d));\n"
+              "}\n");
+    GLuint program = glsl_make(gl, printed("%s%s", rooms, body));
     gl->Uniform4fv(gl->GetUniformLocation(program, "harness_view"), 6, packed);
     for (int way = 0; way < 2; way++) {
       for (int i = 0; i < RAYS; i++) inputs[i][6] = (float)way;

@@ -30,16 +30,14 @@ typedef struct sky {
 } sky;
 
 static void make_sky(const char *environment, sky *out_sky) {
-  char text[1024];
   const abbe_render_desc desc = {.min_nm = 380, .max_nm = 780};
   const abbe_gl *gl = abbe_context_gl(context);
   *out_sky = (sky){0};
-  snprintf(text, sizeof text,
-           "materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.2], fov: 40}\n"
-           "objects:\n- {name: floor, shape: rectangle, width: 1, height: 1, reflectance: 0.5}\n"
-           "environment: {size: 256, %s}\n",
-           environment);
-  load_text(text, &out_sky->scene);
+  out_sky->scene = scene_of(
+      printed("materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.2], fov: 40}\n"
+              "objects:\n- {name: floor, shape: rectangle, width: 1, height: 1, reflectance: 0.5}\n"
+              "environment: {size: 256, %s}\n",
+              environment));
   abbe_gl_state_begin(gl);
   OK(abbe_gpu_make(gl, &out_sky->gpu, &error));
   OK(abbe_gpu_environment_make(&out_sky->gpu, &out_sky->scene, ABBE_RGB_SPACE_REC709, &desc,
@@ -49,7 +47,7 @@ static void make_sky(const char *environment, sky *out_sky) {
                            out_sky->program);
 }
 
-static void free_sky(sky *s) {
+static void sky_free(sky *s) {
   abbe_context_gl(context)->DeleteProgram(s->program);
   abbe_gpu_environment_free(&s->gpu, &s->environment);
   abbe_gpu_free(&s->gpu);
@@ -92,8 +90,7 @@ GROUP(make_context, free_context);
 
 /* Away from the poles, over which the texture does not go on. */
 TEST(a_narrow_ray_sees_the_map) {
-  sky s;
-  make_sky(LAMPS, &s);
+  FILLED(sky, s, make_sky(LAMPS, &s));
   for (size_t i = 0; i < LOOKS; i++) {
     double d[3];
     direction_of(i, LOOKS, d);
@@ -107,12 +104,10 @@ TEST(a_narrow_ray_sees_the_map) {
     for (int k = 0; k < 3; k++)
       if (fabs(d[2]) < 0.999) assert_near((double)out[i][k], rgb[k], 2e-3 * rgb[k] + 0.1);
   }
-  free_sky(&s);
 }
 
 TEST(what_is_alike_all_around_stays_so) {
-  sky s;
-  make_sky("uniform: [0.7, 1, 1.6]", &s);
+  FILLED(sky, s, make_sky("uniform: [0.7, 1, 1.6]", &s));
   for (size_t i = 0; i < LOOKS; i++) {
     double d[3];
     direction_of(i, LOOKS, d);
@@ -123,12 +118,10 @@ TEST(what_is_alike_all_around_stays_so) {
   for (size_t i = 1; i < LOOKS; i++)
     for (int k = 0; k < 3; k++)
       assert_near((double)out[i][k], (double)out[0][k], 1e-6 * (double)out[0][k]);
-  free_sky(&s);
 }
 
 TEST(the_mean_over_the_sphere_is_kept) {
-  sky s;
-  make_sky(LAMPS, &s);
+  FILLED(sky, s, make_sky(LAMPS, &s));
   for (double wide = 0.1; wide < 4; wide *= 2) {
     double sum[3] = {0, 0, 0};
     for (size_t i = 0; i < LOOKS; i++) {
@@ -143,7 +136,6 @@ TEST(the_mean_over_the_sphere_is_kept) {
     /* faces stretch a bilinear filter by their own place */
     for (int k = 0; k < 3; k++) assert_near(sum[k] / s.scene.environment->mean[k], 1, 0.02);
   }
-  free_sky(&s);
 }
 
 /* Great circles over edges and corners of the cube, poles and the map's own seam: as steep as its
@@ -154,9 +146,8 @@ TEST(nothing_jumps) {
       {{0, 0, 1}, {0.8, 0.6, 0}},
       {{0.70710678, 0.70710678, 0}, {0, 0, 1}},
       {{0.57735027, 0.57735027, 0.57735027}, {0.70710678, -0.70710678, 0}}};
-  sky s;
   double steepest = 0;
-  make_sky(LAMPS, &s);
+  FILLED(sky, s, make_sky(LAMPS, &s));
   for (int circle = 0; circle < 4; circle++)
     for (double wide = 0.1; wide < 1; wide *= 2) {
       const double step = 2 * ABBE_PI / LOOKS;
@@ -177,7 +168,6 @@ TEST(nothing_jumps) {
     }
   print_message("in a step of a width: %.2f of the most\n", steepest);
   assert_true(steepest < 4);
-  free_sky(&s);
 }
 
 /* The map's mean over a parallelogram of directions, by 40 x 40 places. */
@@ -206,9 +196,8 @@ static void mean_over(const abbe_environment *e, const float a[4], const float b
  * footprint, where it does not matter how the filter fades. */
 TEST(a_wide_ray_sees_the_mean) {
   enum { RAYS = 400 };
-  sky s;
   double off = 0, all = 0, narrow_off = 0;
-  make_sky(LAMPS, &s);
+  FILLED(sky, s, make_sky(LAMPS, &s));
   for (int pass = 0; pass < 2; pass++) {
     for (size_t i = 0; i < RAYS; i++) {
       double d[3];
@@ -229,7 +218,6 @@ TEST(a_wide_ray_sees_the_mean) {
                 sqrt(off / all), sqrt(narrow_off / all));
   assert_true(sqrt(off / all) < 0.15);
   assert_true(off < 0.2 * narrow_off);
-  free_sky(&s);
 }
 
 /* Bits that a look finds are the same whatever is looked at beside it: every second look here is
@@ -237,8 +225,7 @@ TEST(a_wide_ray_sees_the_mean) {
 TEST(looks_are_by_themselves) {
   enum { TURN = 5 };
   static float first[LOOKS][4];
-  sky s;
-  make_sky(LAMPS, &s);
+  FILLED(sky, s, make_sky(LAMPS, &s));
   for (int pass = 0; pass < 2; pass++) {
     for (size_t i = 0; i < LOOKS; i++) {
       const size_t from = pass == 0 || i % 2 != 0 ? i : (i + 2 * TURN) % LOOKS;
@@ -251,5 +238,4 @@ TEST(looks_are_by_themselves) {
   }
   for (size_t i = 0; i < LOOKS; i += 2)
     assert_memory_equal(out[i], first[(i + 2 * TURN) % LOOKS], sizeof out[i]);
-  free_sky(&s);
 }

@@ -4,21 +4,15 @@
 #include "gl/scene/local_scene.h"
 
 static void make(const abbe_scene *scene, abbe_local_scene *local) {
-  abbe_error error = {0};
-  abbe_result result = abbe_local_scene_make(scene, local, &error);
-  if (result != ABBE_OK) print_error("%s\n", error.text);
-  assert_int_equal(result, ABBE_OK);
+  OK(abbe_local_scene_make(scene, local, &error));
 }
 
 TEST(a_scene_around_the_origin_stays) {
-  OWNED(abbe_scene, scene);
-  abbe_local_scene local;
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
-  make(&scene, &local);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
+  FILLED(abbe_local_scene, local, make(&scene, &local));
   assert_false(local.moved);
   assert_ptr_equal(local.scene, &scene);
   assert_true(local.origin[0] == 0 && local.origin[1] == 0 && local.origin[2] == 0);
-  abbe_local_scene_free(&local);
 }
 
 /* 1e5 m from there: to a double's last digit that is what it was at the origin. */
@@ -29,20 +23,18 @@ static void check_point(const double moved[3], const double origin[3], const dou
 }
 
 TEST(everything_moves_together) {
-  OWNED(abbe_scene, scene);
-  abbe_local_scene local;
-  load_text("materials: glass.yaml\n"
-            "camera: {eye: [100000, 99999, 0.5], target: [100000, 100000, 0.05]}\n"
-            "lights:\n- {name: lamp, kind: point, position: [100000, 100000, 0.6], intensity: 1}\n"
-            "objects:\n"
-            "- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5,\n"
-            "   transform: [{translate: [100000, 100000, 0]}]}\n"
-            "- {name: ball, shape: sphere, radius: 0.08, material: crown,\n"
-            "   transform: [{translate: [100000, 100000, 0.2]}]}\n"
-            "- {name: brick, shape: box, size: [0.1, 0.1, 0.1], material: crown,\n"
-            "   transform: [{translate: [100000.3, 100000, 0.2]}]}\n",
-            &scene);
-  make(&scene, &local);
+  OWNED(abbe_scene, scene) = scene_of(
+      "materials: glass.yaml\n"
+      "camera: {eye: [100000, 99999, 0.5], target: [100000, 100000, 0.05]}\n"
+      "lights:\n- {name: lamp, kind: point, position: [100000, 100000, 0.6], intensity: 1}\n"
+      "objects:\n"
+      "- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5,\n"
+      "   transform: [{translate: [100000, 100000, 0]}]}\n"
+      "- {name: ball, shape: sphere, radius: 0.08, material: crown,\n"
+      "   transform: [{translate: [100000, 100000, 0.2]}]}\n"
+      "- {name: brick, shape: box, size: [0.1, 0.1, 0.1], material: crown,\n"
+      "   transform: [{translate: [100000.3, 100000, 0.2]}]}\n");
+  FILLED(abbe_local_scene, local, make(&scene, &local));
   assert_true(local.moved);
   assert_near(local.origin[0], 1e5 + 0.135, 1e-9);
   const abbe_scene *moved = local.scene;
@@ -76,20 +68,17 @@ TEST(everything_moves_together) {
   abbe_local_scene_to_world(&local, &back);
   check_point(back.origin, (const double[3]){0, 0, 0}, view.origin);
   abbe_local_scene_free(&local);
-  abbe_local_scene_free(&local);
 }
 
 TEST(lights_repeat_where_the_scene_is) {
   static const char *const texts[] = {
-      CAMERA POINT_LIGHT FLOOR BALL("crown"), CAMERA POINT_LIGHT FLOOR
-      "- {name: ball, shape: sphere, radius: 0.08, levels: 2, transform: [{translate: [1000, 0, "
-      "0.2]}], material: crown}\n"};
+      CAMERA POINT_LIGHT FLOOR BALL("crown"),
+      CAMERA POINT_LIGHT FLOOR "- {name: ball, shape: sphere, radius: 0.08, levels: 2, transform: "
+                               "[{translate: [1000, 0, 0.2]}], material: crown}\n"};
   for (int i = 0; i < 2; i++) {
-    OWNED(abbe_scene, scene);
-    abbe_local_scene local;
     abbe_error error = {0};
-    load_text(texts[i], &scene);
-    make(&scene, &local);
+    OWNED(abbe_scene, scene) = scene_of(texts[i]);
+    FILLED(abbe_local_scene, local, make(&scene, &local));
     assert_true(local.moved == (i == 1));
     double at[3];
     memcpy(at, local.scene->light[0].position, sizeof at);
@@ -102,6 +91,5 @@ TEST(lights_repeat_where_the_scene_is) {
       assert_string_equal(local.scene->light[k].name, "lamp");
     }
     assert_int_equal(local.scene->object_count, scene.object_count);
-    abbe_local_scene_free(&local);
   }
 }

@@ -32,34 +32,20 @@ static void check_says(const abbe_image *image, abbe_observer observer) {
 }
 
 static void render_xyz(const abbe_scene *scene, abbe_observer observer, double xyz[3]) {
-  const abbe_render_desc desc = {.width = SIDE,
-                                 .height = SIDE,
-                                 .min_nm = 360,
-                                 .max_nm = 830,
-                                 .wavelengths = 21,
-                                 .space = ABBE_RGB_SPACE_XYZ,
-                                 .observer = observer};
-  abbe_renderer *renderer = make_renderer(scene, &desc);
-  OWNED(abbe_image, image);
-  draw_frame(renderer);
-  read_picture(renderer, false, &image);
+  const abbe_render_desc desc =
+      FIELDS(.width = SIDE, .height = SIDE, .min_nm = 360, .max_nm = 830, .wavelengths = 21,
+             .space = ABBE_RGB_SPACE_XYZ, .observer = observer);
+  HELD(abbe_renderer, renderer) = drawn_renderer(scene, &desc);
+  OWNED(abbe_image, image) = picture_of(renderer);
   check_says(&image, observer);
   mean_xyz(&image, xyz);
-  abbe_renderer_free(renderer);
 }
 
 static void trace(const abbe_scene *scene, abbe_observer observer, size_t bands, size_t passes,
                   abbe_image *out) {
-  const abbe_trace_desc desc = {.width = SIDE,
-                                .height = SIDE,
-                                .min_nm = 360,
-                                .max_nm = 830,
-                                .no_map = true,
-                                .bands = bands,
-                                .space = ABBE_RGB_SPACE_XYZ,
-                                .observer = observer,
-                                .photons = 1 << 16,
-                                .threads = 2};
+  const abbe_trace_desc desc = FIELDS(.width = SIDE, .height = SIDE, .min_nm = 360, .max_nm = 830,
+                                      .no_map = true, .bands = bands, .space = ABBE_RGB_SPACE_XYZ,
+                                      .observer = observer, .photons = 1 << 16, .threads = 2);
   abbe_tracer *tracer = NULL;
   OK(abbe_tracer_make(scene, &desc, &tracer, &error));
   for (size_t i = 0; i < passes; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
@@ -70,10 +56,8 @@ static void trace(const abbe_scene *scene, abbe_observer observer, size_t bands,
 
 static void trace_xyz(const abbe_scene *scene, abbe_observer observer, size_t passes,
                       double xyz[3]) {
-  abbe_image image;
-  trace(scene, observer, 0, passes, &image);
+  FILLED(abbe_image, image, trace(scene, observer, 0, passes, &image));
   mean_xyz(&image, xyz);
-  abbe_image_free(&image);
 }
 
 GROUP(make_context, free_context);
@@ -94,9 +78,8 @@ TEST(white_cards_have_published_whites) {
             {CARD("E", "1"), ABBE_OBSERVER_CIE_2015_2, {1.0 / 3, 1.0 / 3}},
             {CARD("E", "1"), ABBE_OBSERVER_CIE_2015_10, {1.0 / 3, 1.0 / 3}}};
   for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
-    OWNED(abbe_scene, scene);
     double xyz[2][3];
-    load_text(of[i].text, &scene);
+    OWNED(abbe_scene, scene) = scene_of(of[i].text);
     render_xyz(&scene, of[i].observer, xyz[0]);
     trace_xyz(&scene, of[i].observer, 1, xyz[1]);
     for (int who = 0; who < 2; who++) {
@@ -126,9 +109,8 @@ TEST(measured_cards_show_the_integral) {
                                       CARD("F11", "{patch: foliage}")};
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
     for (int o = 0; o < ABBE_OBSERVER_COUNT; o++) {
-      OWNED(abbe_scene, scene);
       double wanted[3], drawn[3], traced[3];
-      load_text(texts[i], &scene);
+      OWNED(abbe_scene, scene) = scene_of(texts[i]);
       integrate(&scene, (abbe_observer)o, wanted);
       render_xyz(&scene, (abbe_observer)o, drawn);
       trace_xyz(&scene, (abbe_observer)o, 1, traced);
@@ -151,17 +133,14 @@ TEST(measured_cards_show_the_integral) {
  * picture as far as it is that of 1931; not that of another. */
 TEST(bands_say_what_each_observer_sees) {
   static const abbe_illuminant d65 = {.kind = ABBE_ILLUMINANT_D65};
-  OWNED(abbe_scene, scene);
-  OWNED(abbe_image, bands);
   double first[2][3] = {{0}}; /* of 1931: wanted, drawn */
-  load_text(ROOM, &scene);
-  trace(&scene, ABBE_OBSERVER_CIE_1931, BANDS, PASSES, &bands);
+  OWNED(abbe_scene, scene) = scene_of(ROOM);
+  FILLED(abbe_image, bands, trace(&scene, ABBE_OBSERVER_CIE_1931, BANDS, PASSES, &bands));
   for (int o = 0; o < ABBE_OBSERVER_COUNT; o++) {
     const abbe_relight_desc desc = {.view = {.observer = (abbe_observer)o, .from = &d65},
                                     .space = ABBE_RGB_SPACE_XYZ};
-    OWNED(abbe_image, seen);
     double wanted[3], drawn[3], traced[3], apart = 0;
-    OK(abbe_relight_make(&bands, "it", &desc, &seen, &error));
+    MADE(abbe_image, seen, abbe_relight_make(&bands, "it", &desc, &seen, &error));
     mean_xyz(&seen, wanted);
     trace_xyz(&scene, (abbe_observer)o, PASSES, traced);
     render_xyz(&scene, (abbe_observer)o, drawn);
@@ -190,10 +169,9 @@ TEST(an_environment_in_colour) {
       "materials: glass.yaml\ncamera: {eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 20}\n"
       "environment: {softboxes: [{elevation: 90, azimuth: 0, radius: 8, radiance: [9, 4, 2]}]}\n"
       "objects:\n- {name: card, shape: rectangle, width: 2, height: 2, reflectance: 1}\n";
-  OWNED(abbe_scene, scene);
-  abbe_image bands, seen;
-  load_text(text, &scene);
-  trace(&scene, ABBE_OBSERVER_CIE_1931, BANDS, 4, &bands);
+  abbe_image seen;
+  OWNED(abbe_scene, scene) = scene_of(text);
+  FILLED(abbe_image, bands, trace(&scene, ABBE_OBSERVER_CIE_1931, BANDS, 4, &bands));
   for (int o = 0; o < ABBE_OBSERVER_COUNT; o++) {
     const abbe_relight_desc desc = {.view = {.observer = (abbe_observer)o, .from = &d65},
                                     .space = ABBE_RGB_SPACE_XYZ};
@@ -211,14 +189,12 @@ TEST(an_environment_in_colour) {
     }
     abbe_image_free(&seen);
   }
-  abbe_image_free(&bands);
 }
 
 TEST(printed_colours_have_no_observer) {
-  OWNED(abbe_scene, scene);
   abbe_renderer *renderer = NULL;
   abbe_render_desc desc = {.profile = ABBE_PROFILE_THESIS, .observer = ABBE_OBSERVER_CIE_1964};
-  load_text(ROOM, &scene);
+  OWNED(abbe_scene, scene) = scene_of(ROOM);
   REFUSED(ABBE_INVALID_ARGUMENT, "CIE 1964",
           abbe_renderer_make(context, &scene, &desc, &renderer, &error));
   desc = (abbe_render_desc){.observer = ABBE_OBSERVER_COUNT};

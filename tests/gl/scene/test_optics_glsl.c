@@ -138,9 +138,8 @@ TEST(microfacets) {
       "  return vec4(wi, share);\n}\n",
       "  return vec4(facets_reflect(a.zw, wi, wo), facets_pdf(a.zw, wo, wi), h.xy);\n}\n"};
   for (int part = 0; part < 2; part++) {
-    char text[1024];
-    snprintf(text, sizeof text, "%s%s", start, end[part]);
-    glsl_evaluate(abbe_context_gl(context), text, (const float(*)[8])inputs, count, outputs);
+    glsl_evaluate(abbe_context_gl(context), printed("%s%s", start, end[part]),
+                  (const float(*)[8])inputs, count, outputs);
     for (size_t i = 0; i < count; i++) {
       const double x = inputs[i][0], y = inputs[i][1], u[2] = {inputs[i][4], inputs[i][5]};
       const double wo[3] = {x, y, sqrt(1 - x * x - y * y)};

@@ -15,7 +15,7 @@
 static void make_charts(const char *text, abbe_scene *scene, abbe_plan *plan,
                         abbe_receiver_charts *out) {
   abbe_error error = {0};
-  load_text(text, scene);
+  *scene = scene_of(text);
   abbe_result result = abbe_plan_make(scene, NULL, plan, &error);
   if (result == ABBE_OK) result = abbe_receiver_charts_make(scene, plan, out, &error);
   if (result != ABBE_OK) print_error("%s\n", error.text);
@@ -25,7 +25,7 @@ static void make_charts(const char *text, abbe_scene *scene, abbe_plan *plan,
 TEST(faces_know_their_sides) {
   OWNED(abbe_scene, scene) = {0};
   OWNED(abbe_plan, plan) = {0};
-  abbe_receiver_charts charts = {0};
+  OWNED(abbe_receiver_charts, charts) = {0};
   make_charts(CAMERA POINT_LIGHT FLOOR HILL CRATE BALL("crown") CEILING, &scene, &plan, &charts);
   assert_int_equal(plan.receiver_count, 4);
   assert_int_equal(plan.parallelogram_count, 8);
@@ -54,5 +54,4 @@ TEST(faces_know_their_sides) {
       }
     }
   }
-  abbe_receiver_charts_free(&charts);
 }

@@ -18,7 +18,7 @@ static void paint(const double rgb[3], abbe_object *object) {
 
 /* The shipped prism, whose floor and wall are painted: by a measured patch, or by Rec.709. */
 static void load_prism(const char *patch, const double rgb[3], bool textured, abbe_scene *scene) {
-  load_file(ABBE_SOURCE_DIR "/scenes/prism.yaml", scene);
+  *scene = shipped_scene("prism");
   for (size_t i = 0; i < scene->object_count; i++) {
     abbe_object *o = &scene->object[i];
     if (o->material != NULL || o->reflectance[0] < 0.5) continue;
@@ -33,19 +33,14 @@ static void load_prism(const char *patch, const double rgb[3], bool textured, ab
 static void render(const abbe_scene *scene, abbe_image *out) {
   const abbe_render_desc desc = {
       .width = SIDE, .height = SIDE, .wavelengths = 21, .space = ABBE_RGB_SPACE_XYZ};
-  abbe_renderer *renderer = make_renderer(scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, out);
-  abbe_renderer_free(renderer);
+  HELD(abbe_renderer, renderer) = drawn_renderer(scene, &desc);
+  *out = picture_of(renderer);
 }
 
 static void trace(const abbe_scene *scene, abbe_image *out) {
-  const abbe_trace_desc desc = {.width = SIDE,
-                                .height = SIDE,
-                                .no_map = true,
-                                .space = ABBE_RGB_SPACE_XYZ,
-                                .photons = 1 << 18,
-                                .threads = 2};
+  const abbe_trace_desc desc =
+      FIELDS(.width = SIDE, .height = SIDE, .no_map = true, .space = ABBE_RGB_SPACE_XYZ,
+             .photons = 1 << 18, .threads = 2);
   abbe_tracer *tracer = NULL;
   OK(abbe_tracer_make(scene, &desc, &tracer, &error));
   for (int i = 0; i < PASSES; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
@@ -58,8 +53,7 @@ static double off(const abbe_image *picture, const abbe_image *reference) {
   static const char *const names[3] = {"X", "Y", "Z"};
   double apart = 0, light = 0;
   for (int k = 0; k < 3; k++) {
-    char caustic[16];
-    snprintf(caustic, sizeof caustic, "caustic.%s", names[k]);
+    const char *caustic = printed("caustic.%s", names[k]);
     const size_t a = abbe_image_find_channel(picture, names[k]),
                  b = abbe_image_find_channel(reference, names[k]);
     for (size_t p = 0; p < SIDE * SIDE; p++)
@@ -84,12 +78,9 @@ TEST(a_spectrum_on_colours) {
             {"a texture of the same", NULL, {0.7, 0.2, 0.1}, true}};
   double grey = 0;
   for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
-    OWNED(abbe_scene, scene);
-    OWNED(abbe_image, drawn);
-    OWNED(abbe_image, traced);
-    load_prism(of[i].patch, of[i].rgb, of[i].textured, &scene);
-    render(&scene, &drawn);
-    trace(&scene, &traced);
+    FILLED(abbe_scene, scene, load_prism(of[i].patch, of[i].rgb, of[i].textured, &scene));
+    FILLED(abbe_image, drawn, render(&scene, &drawn));
+    FILLED(abbe_image, traced, trace(&scene, &traced));
     const double found = off(&drawn, &traced);
     print_message("%s: off by %.3f of the caustic\n", of[i].what, found);
     if (i == 0) grey = found;
@@ -113,10 +104,8 @@ TEST(tables_rest_on_facts) {
                                 "reflectance: {patch: foliage}}\n" BALL("flat"),
              false}};
   for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
-    OWNED(abbe_scene, scene);
-    OWNED(abbe_plan, plan);
-    load_text(of[i].text, &scene);
-    OK(abbe_plan_make(&scene, NULL, &plan, &error));
+    OWNED(abbe_scene, scene) = scene_of(of[i].text);
+    MADE(abbe_plan, plan, abbe_plan_make(&scene, NULL, &plan, &error));
     assert_int_equal(plan.receiver_colours, of[i].has);
   }
 }

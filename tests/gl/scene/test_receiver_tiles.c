@@ -152,13 +152,9 @@ TEST(places_and_texels) {
 #define PEBBLE "- {name: pebble, shape: sphere, radius: 0.05, reflectance: 0.5}\n"
 
 /* One exit: a ring of light on the floor, a side of which the lamp does not see. */
-static const abbe_render_desc one_exit = {.width = 96,
-                                          .height = 96,
-                                          .photons = 128,
-                                          .map_size = 512,
-                                          .exits = 1,
-                                          .aovs = true,
-                                          .space = ABBE_RGB_SPACE_XYZ};
+static const abbe_render_desc one_exit =
+    FIELDS(.width = 96, .height = 96, .photons = 128, .map_size = 512, .exits = 1, .aovs = true,
+           .space = ABBE_RGB_SPACE_XYZ);
 
 static size_t channel_of(const abbe_image *image, const char *name) {
   const size_t channel = abbe_image_find_channel(image, name);
@@ -168,14 +164,11 @@ static size_t channel_of(const abbe_image *image, const char *name) {
 
 static abbe_statistics draw(const char *text, const abbe_render_desc *desc, abbe_image *picture,
                             size_t *tiles) {
-  abbe_scene scene = {0};
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, desc);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, desc);
   abbe_statistics statistics = draw_frame(renderer);
-  if (picture != NULL) read_picture(renderer, true, picture);
+  if (picture != NULL) *picture = aovs_of(renderer);
   *tiles = renderer->atlas.used ? renderer->atlas.tiles[0].count : 0;
-  abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
   return statistics;
 }
 
@@ -278,13 +271,12 @@ TEST(meshes_show_what_rectangles_do) {
  * axis, L further up its light has spread to x = t (d + L (1 + 2 d / R)), and
  * E = I ((n - 1) / (n + 1))^2 / (x / t)^2. */
 TEST(behind_the_lamp) {
-  OWNED(abbe_image, picture) = {0};
   abbe_render_desc desc = one_exit;
   size_t tiles = 0;
   desc.width = desc.height = 16;
   desc.photons = 512;
   desc.energy_share = 1e-3; /* little light asks for tiles then */
-  draw(CEILING_EYE BULB ROOM GREAT_BALL, &desc, &picture, &tiles);
+  FILLED(abbe_image, picture, draw(CEILING_EYE BULB ROOM GREAT_BALL, &desc, &picture, &tiles));
   assert_true(tiles >= 1);
   const double n = 1.5, d = 0.3, l = 0.6, radius = 0.1;
   const double spread = d + l * (1 + 2 * d / radius);
@@ -298,7 +290,7 @@ TEST(behind_the_lamp) {
 static double sum_of_layer(const abbe_renderer *r, size_t layer, const abbe_receiver_tiles *tiles,
                            double *outside) {
   const size_t side = r->plan.desc.map_size;
-  float *texel = calloc(r->map.layers * side * side * 4, sizeof *texel);
+  FREED float *texel = calloc(r->map.layers * side * side * 4, sizeof *texel);
   double sum = 0;
   assert_non_null(texel);
   r->gpu.gl->BindTexture(GL_TEXTURE_2D_ARRAY, r->map.texture);
@@ -317,7 +309,6 @@ static double sum_of_layer(const abbe_renderer *r, size_t layer, const abbe_rece
       sum += value * area;
       *outside += area == 0 ? fabs(value) : 0;
     }
-  free(texel);
   return sum;
 }
 
@@ -333,19 +324,17 @@ TEST(a_closed_room) {
       {"two refractors", CEILING_EYE BULB ROOM WALLS BALL("crown") BRICK("crown"), 0},
   };
   for (size_t i = 0; i < sizeof rooms / sizeof *rooms; i++) {
-    OWNED(abbe_scene, scene) = {0};
     abbe_render_desc desc = small_frame;
     desc.wavelengths = rooms[i].wavelengths;
     desc.energy_share = 1e-3; /* little light asks for tiles then */
-    load_text(rooms[i].text, &scene);
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    OWNED(abbe_scene, scene) = scene_of(rooms[i].text);
+    HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
     const abbe_statistics s = draw_frame(renderer);
     const abbe_ledger *e = &s.energy;
     const abbe_receiver_tiles *tiles = &renderer->atlas.tiles[0];
-    OWNED(abbe_image, map) = {0};
     double outside = 0;
     assert_true(renderer->atlas.used);
-    read_map(renderer, 0, &map);
+    OWNED(abbe_image, map) = map_of(renderer, 0);
     const double beside = sum_of_layer(renderer, renderer->atlas.layer[0], tiles, &outside);
     const double both = image_sum(&map, 1) + beside;
     print_message("%s: %zu tiles, %.3f of all, missed %.2g, imbalance %.2g, open by %.2g\n",
@@ -358,7 +347,6 @@ TEST(a_closed_room) {
     assert_true(fabs(both - e->deposited) < 1e-4 * e->deposited);
     assert_true(fabs(beside - e->on_tiles) < 1e-4 * beside);
     assert_true(outside == 0);
-    abbe_renderer_free(renderer);
   }
 }
 
@@ -377,12 +365,11 @@ TEST(no_tiles) {
 
 /* More parts take light than there is room for maps: said, not left dark. */
 TEST(too_many_parts) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_renderer *renderer = NULL;
   abbe_render_desc desc = small_frame;
   desc.map_size = 64; /* four rectangles */
   desc.energy_share = 1e-3;
-  load_text(CEILING_EYE BULB BUBBLE BALL("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CEILING_EYE BULB BUBBLE BALL("crown"));
   REFUSED(ABBE_UNSUPPORTED, "", abbe_renderer_make(context, &scene, &desc, &renderer, &error));
   print_message("%s\n", last_error.text);
   assert_non_null(strstr(last_error.text, "'bubble'"));

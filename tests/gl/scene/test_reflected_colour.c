@@ -29,12 +29,9 @@ static void mean_xyz(const abbe_image *image, abbe_rgb_space space, double xyz[3
 
 static void render_xyz(const abbe_scene *scene, abbe_rgb_space space, double xyz[3]) {
   const abbe_render_desc desc = {.width = 16, .height = 16, .space = space, .adaptive = 1};
-  abbe_renderer *renderer = make_renderer(scene, &desc);
-  OWNED(abbe_image, image);
-  draw_frame(renderer);
-  read_picture(renderer, false, &image);
+  HELD(abbe_renderer, renderer) = drawn_renderer(scene, &desc);
+  OWNED(abbe_image, image) = picture_of(renderer);
   mean_xyz(&image, space, xyz);
-  abbe_renderer_free(renderer);
 }
 
 static void trace_xyz(const abbe_scene *scene, abbe_rgb_space space, size_t passes, double xyz[3]) {
@@ -43,8 +40,7 @@ static void trace_xyz(const abbe_scene *scene, abbe_rgb_space space, size_t pass
   abbe_tracer *tracer = NULL;
   OK(abbe_tracer_make(scene, &desc, &tracer, &error));
   for (size_t i = 0; i < passes; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
-  OWNED(abbe_image, image);
-  OK(abbe_tracer_picture(tracer, &image, &error));
+  MADE(abbe_image, image, abbe_tracer_picture(tracer, &image, &error));
   mean_xyz(&image, space, xyz);
   abbe_tracer_free(tracer);
 }
@@ -72,9 +68,8 @@ TEST(flat_patches_show_the_integral) {
       CARD("F11", "{patch: red}"),     CARD("A", "{patch: cyan}"),
       CARD("F11", "{patch: foliage}"), CARD("LED-B3", "{patch: purple}")};
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-    OWNED(abbe_scene, scene);
     double wanted[3], drawn[3], traced[3];
-    load_text(texts[i], &scene);
+    OWNED(abbe_scene, scene) = scene_of(texts[i]);
     integrate(&scene, wanted);
     render_xyz(&scene, ABBE_RGB_SPACE_ACESCG, drawn);
     trace_xyz(&scene, ABBE_RGB_SPACE_ACESCG, 1, traced);
@@ -89,9 +84,8 @@ TEST(lifted_colours_are_the_same_in_both) {
   static const char *const lights[] = {CARD("A", "[0.7, 0.3, 0.1]"), CARD("F2", "[0.1, 0.6, 0.2]"),
                                        CARD("D65", "[0.1, 0.2, 0.8]")};
   for (size_t i = 0; i < 3; i++) {
-    OWNED(abbe_scene, scene);
     double drawn[3], traced[3];
-    load_text(lights[i], &scene);
+    OWNED(abbe_scene, scene) = scene_of(lights[i]);
     render_xyz(&scene, ABBE_RGB_SPACE_REC709, drawn);
     trace_xyz(&scene, ABBE_RGB_SPACE_REC709, 1, traced);
     for (int k = 0; k < 3; k++) assert_near(drawn[k], traced[k], 3e-5);
@@ -113,9 +107,8 @@ TEST(lifted_colours_are_the_same_in_both) {
 /* The XYZ of a whole scene, with caustics and what is seen through glass; where more rays are sent
  * is decided by colours of the space, so none are. */
 TEST(the_space_does_not_change_the_light) {
-  OWNED(abbe_scene, scene);
   double xyz[ABBE_RGB_SPACE_COUNT][3], traced[ABBE_RGB_SPACE_COUNT][3];
-  load_text(ROOM, &scene);
+  OWNED(abbe_scene, scene) = scene_of(ROOM);
   for (int s = 0; s < ABBE_RGB_SPACE_COUNT; s++) {
     render_xyz(&scene, (abbe_rgb_space)s, xyz[s]);
     trace_xyz(&scene, (abbe_rgb_space)s, 1, traced[s]);

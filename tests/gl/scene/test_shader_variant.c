@@ -17,18 +17,10 @@ static char *text_of(const abbe_shader_variant *variant, const char *more) {
 }
 
 TEST(counts_and_flags_are_told) {
-  const abbe_shader_variant v = {.lights = 2,
-                                 .refractors = 3,
-                                 .planes = 57,
-                                 .wavelengths = 7,
-                                 .bands = 14,
-                                 .exits = 9,
-                                 .convex = true,
-                                 .wide = true,
-                                 .aovs = true,
-                                 .shadow_planes = 9,
-                                 .one_shadow = true,
-                                 .pixel_threads = 8};
+  const abbe_shader_variant v =
+      FIELDS(.lights = 2, .refractors = 3, .planes = 57, .wavelengths = 7, .bands = 14, .exits = 9,
+             .convex = true, .wide = true, .aovs = true, .shadow_planes = 9, .one_shadow = true,
+             .pixel_threads = 8);
   FREED char *text = text_of(&v, "#define MORE 1\n");
   assert_true(has(text, "#define LIGHTS 2"));
   assert_true(has(text, "#define SPECTRUM_ROOM 2048"));
@@ -59,7 +51,7 @@ TEST(nothing_has_room_for_one) {
  * worth it. */
 TEST(copies_are_told_where_they_are_made) {
   abbe_shader_variant v = {.lights = 1, .receivers = 3, .planes = 2, .one_convex = true};
-  char *text = text_of(&v, NULL);
+  FREED char *text = text_of(&v, NULL);
   assert_null(strstr(text, "EACH_"));
   assert_null(strstr(text, "SOFTWARE"));
   free(text);
@@ -76,7 +68,6 @@ TEST(copies_are_told_where_they_are_made) {
   text = text_of(&v, NULL);
   assert_null(strstr(text, "EACH_RECEIVER"));
   assert_null(strstr(text, "EACH_PLANE"));
-  free(text);
 }
 
 /* A table of exactly a block is a block; one element more is storage. */
@@ -86,7 +77,7 @@ TEST(tables_beyond_a_block_are_storage) {
   v.surfaces = ABBE_GPU_BLOCK_BYTES / 16;
   v.reflections = ABBE_GPU_BLOCK_BYTES / 16;
   v.wavelengths = ABBE_GPU_BLOCK_BYTES / 16 / 2; /* of the refractor, and of the air */
-  char *text = text_of(&v, NULL);
+  FREED char *text = text_of(&v, NULL);
   assert_null(strstr(text, "IN_STORAGE"));
   free(text);
   v.planes++;
@@ -100,37 +91,24 @@ TEST(tables_beyond_a_block_are_storage) {
   assert_true(has(text, "#define SURFACES_IN_STORAGE"));
   assert_true(has(text, "#define REFLECTIONS_IN_STORAGE"));
   assert_true(has(text, "#define SPECTRA_IN_STORAGE"));
-  free(text);
 }
 
 TEST(photons_are_told_where_there_are_any) {
   abbe_shader_variant v = {.hit_stride = 7, .steps = 128, .bridge = true};
-  char *text = text_of(&v, NULL);
+  FREED char *text = text_of(&v, NULL);
   assert_true(has(text, "#define STEPS 128") && has(text, "#define BRIDGE"));
   free(text);
   v.tiles = 3;
   text = text_of(&v, NULL);
   assert_true(has(text, "#define TILES") && has(text, "#define MOST_TILES 3"));
-  free(text);
 }
 
 /* Other counts are other uniforms of the same program. */
 TEST(other_counts_are_the_same_program) {
-  abbe_shader_variant v = {.refractors = 2,
-                           .wavelengths = 7,
-                           .bands = 14,
-                           .band_levels = 4,
-                           .exits = 4,
-                           .slots = 5,
-                           .bvh_stack = 18,
-                           .receiver_root = 3,
-                           .tiles = 3,
-                           .tile_blocks = 32,
-                           .chart_sides = 12,
-                           .hit_stride = 7,
-                           .steps = 128,
-                           .nodes = 7,
-                           .map_levels = 6};
+  abbe_shader_variant v =
+      FIELDS(.refractors = 2, .wavelengths = 7, .bands = 14, .band_levels = 4, .exits = 4,
+             .slots = 5, .bvh_stack = 18, .receiver_root = 3, .tiles = 3, .tile_blocks = 32,
+             .chart_sides = 12, .hit_stride = 7, .steps = 128, .nodes = 7, .map_levels = 6);
   FREED char *text = text_of(&v, NULL);
   v.wavelengths = 12;
   v.bands = 24;

@@ -260,17 +260,16 @@ TEST(the_shader_agrees) {
     for (int c = 0; c < 3; c++) in[i][c] = (float)x[c];
     in[i][3] = (float)(i % SHADER_SOLIDS);
   }
-  char text[1024];
-  snprintf(text, sizeof text,
-           "#define LIGHTS %d\n#define REFLECTION_ROOM 64\n#define LIGHT_ROOM %d\n#define "
-           "REFRACTORS 1\n#define REFRACTOR_ROOM "
-           "1\n#define PLANE_ROOM 1\n#define RECEIVERS 1\n#define RECEIVER_ROOM 1\n#define "
-           "SURFACE_ROOM 1\n#define SPECTRUM_ROOM 1\n#define WAVELENGTHS 1\n#define CONVEX\n"
-           "#define SHADOW_PLANES %zu\n"
-           "#include \"refractor.glsl\"\n#include \"receiver.glsl\"\n"
-           "vec4 f(vec4 a, vec4 b) {\n"
-           "  return vec4(convex_shadow(int(a.w), 0, a.xyz) ? 1 : 0);\n}\n",
-           SHADER_SOLIDS, SHADER_SOLIDS, sizeof shadow.plane / sizeof shadow.plane[0]);
+  const char *text = printed(
+      "#define LIGHTS %d\n#define REFLECTION_ROOM 64\n#define LIGHT_ROOM %d\n#define "
+      "REFRACTORS 1\n#define REFRACTOR_ROOM 1\n#define PLANE_ROOM 1\n#define RECEIVERS "
+      "1\n#define RECEIVER_ROOM 1\n#define SURFACE_ROOM 1\n#define SPECTRUM_ROOM 1\n#define "
+      "WAVELENGTHS 1\n#define CONVEX\n"
+      "#define SHADOW_PLANES %zu\n"
+      "#include \"refractor.glsl\"\n#include \"receiver.glsl\"\n"
+      "vec4 f(vec4 a, vec4 b) {\n"
+      "  return vec4(convex_shadow(int(a.w), 0, a.xyz) ? 1 : 0);\n}\n",
+      SHADER_SOLIDS, SHADER_SOLIDS, sizeof shadow.plane / sizeof shadow.plane[0]);
   GLuint block[2] = {glsl_block(gl, BINDING_LIGHTS, sizeof lights, lights),
                      glsl_block(gl, BINDING_SHADOW_PLANES, sizeof shadow, &shadow)};
   glsl_evaluate(gl, text, (const float(*)[8])in, PLACES, out);
@@ -295,27 +294,25 @@ TEST(the_shader_agrees) {
 }
 
 TEST(what_stands_in_front) {
-  static const char *const text = CAMERA
-      "lights:\n- {name: lamp, kind: point, position: [0, 0, 1], intensity: 1}\n"
-      "- {name: sun, kind: directional, direction: [0, 0.6, -0.8], irradiance: 1}\n"
-      "objects:\n"
-      "- {name: brick, shape: box, size: [0.2, 0.2, 0.2], transform: [{rotate: {axis: [1, 0, 0], "
-      "angle: 30}}, {translate: [0, 0, 0.5]}], material: crown}\n"
-      "- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5}\n"
-      "- {name: wall, shape: rectangle, width: 4, height: 4, transform: [{rotate: {axis: [1, 0, "
-      "0], "
-      "angle: 80}}, {translate: [0, 1, 0]}], reflectance: 0.5}\n"
-      "- {name: shelf, shape: rectangle, width: 0.3, height: 0.3, transform: [{translate: [0, 0, "
-      "0.8]}], reflectance: 0.5}\n"
-      "- {name: aside, shape: sphere, radius: 0.05, transform: [{translate: [0.5, 0, 0.8]}], "
-      "reflectance: 0.5}\n"
-      "- {name: before, shape: sphere, radius: 0.05, transform: [{translate: [0, -0.3, 0.9]}], "
-      "reflectance: 0.5}\n";
+  static const char *const text =
+      CAMERA "lights:\n- {name: lamp, kind: point, position: [0, 0, 1], intensity: 1}\n"
+             "- {name: sun, kind: directional, direction: [0, 0.6, -0.8], irradiance: 1}\n"
+             "objects:\n"
+             "- {name: brick, shape: box, size: [0.2, 0.2, 0.2], transform: [{rotate: {axis: [1, "
+             "0, 0], angle: 30}}, {translate: [0, 0, 0.5]}], material: crown}\n"
+             "- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5}\n"
+             "- {name: wall, shape: rectangle, width: 4, height: 4, transform: [{rotate: {axis: "
+             "[1, 0, 0], angle: 80}}, {translate: [0, 1, 0]}], reflectance: 0.5}\n"
+             "- {name: shelf, shape: rectangle, width: 0.3, height: 0.3, transform: [{translate: "
+             "[0, 0, 0.8]}], reflectance: 0.5}\n"
+             "- {name: aside, shape: sphere, radius: 0.05, transform: [{translate: [0.5, 0, "
+             "0.8]}], reflectance: 0.5}\n"
+             "- {name: before, shape: sphere, radius: 0.05, transform: [{translate: [0, -0.3, "
+             "0.9]}], reflectance: 0.5}\n";
   /* By lamp and by sun: the sun comes over the shelf's plane and the ball before the brick. */
   static const bool expected[5][2] = {
       {false, false}, {false, false}, {true, true}, {false, false}, {false, true}};
-  OWNED(abbe_scene, scene) = {0};
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   for (size_t i = 0; i < 5; i++)
     for (size_t k = 0; k < 2; k++)
       if (abbe_shadow_planes_in_front(&scene.object[0], &scene.light[k], &scene.object[i + 1]) !=
@@ -334,14 +331,11 @@ TEST(shelves_in_front_are_lit) {
       "material: crown}\n"
       "- {name: shelf, shape: rectangle, width: 0.3, height: 0.3, transform: [{translate: [0, 0, "
       "0.8]}], reflectance: 0.5}\n";
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_image, image) = {0};
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   abbe_render_desc desc = small_frame;
   desc.aovs = true;
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, true, &image);
+  abbe_renderer *renderer = drawn_renderer(&scene, &desc);
+  OWNED(abbe_image, image) = aovs_of(renderer);
   abbe_renderer_free(renderer);
   /* The middle shows the shelf: 1 W/sr from 0.7 m straight above, of the white's Y of 1. */
   const float *pixel = image.data + (32 * image.width + 32) * image.channels;

@@ -9,22 +9,16 @@
   ", 0.1], transform: [{translate: [0, 0, " z "]}], material: " material "}\n"
 
 /* Paths are followed far: 2e-4 of the light is left at the most. */
-static const abbe_render_desc far = {.width = 16,
-                                     .height = 16,
-                                     .photons = 32,
-                                     .map_size = 64,
-                                     .wavelengths = 1,
-                                     .energy_share = 1e-5,
-                                     .exits = ABBE_RENDER_MAX_EXITS};
+static const abbe_render_desc far =
+    FIELDS(.width = 16, .height = 16, .photons = 32, .map_size = 64, .wavelengths = 1,
+           .energy_share = 1e-5, .exits = ABBE_RENDER_MAX_EXITS);
 
 static abbe_ledger energy_of(const char *text, const abbe_render_desc *desc) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, desc);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, desc);
   abbe_statistics s = draw_frame(renderer);
   assert_true(abbe_ledger_imbalance(&s.energy) < 1e-4);
   assert_true(s.energy.reached > 0);
-  abbe_renderer_free(renderer);
   return s.energy;
 }
 
@@ -65,12 +59,11 @@ static void draw_both(const abbe_scene *scene, abbe_ledger energy[2], double apa
   abbe_map_layout layout;
   for (int i = 0; i < 2; i++) {
     desc.model = i == 0 ? ABBE_MODEL_CONVEX : ABBE_MODEL_BVH;
-    abbe_renderer *renderer = make_renderer(scene, &desc);
+    HELD(abbe_renderer, renderer) = make_renderer(scene, &desc);
     energy[i] = draw_frame(renderer).energy;
-    read_map(renderer, 0, &map[i]);
+    map[i] = map_of(renderer, 0);
     if (i == 0) abbe_renderer_map_layout(renderer, 0, &layout);
     desc.map_layout = &layout;
-    abbe_renderer_free(renderer);
   }
   for (size_t c = 0; c < 3; c++) {
     double sum = 0;
@@ -89,8 +82,7 @@ static void draw_both(const abbe_scene *scene, abbe_ledger energy[2], double apa
 TEST(triangles_do_as_planes_do) {
   abbe_ledger e[2];
   double apart[3];
-  OWNED(abbe_scene, scene) = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR BRICK("smoke"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BRICK("smoke"));
   draw_both(&scene, e, apart);
   /* cells at the outline start by the equation of the planes, or by the light's view of them, whose
    * texels are a 256th of it: a tenth of them, for its perimeter, may be wrong there by a half */
@@ -108,8 +100,7 @@ TEST(triangles_do_as_planes_do) {
 TEST(triangles_spread_a_spectrum_as_planes_do) {
   abbe_ledger e[2];
   double apart[3];
-  OWNED(abbe_scene, scene) = {0};
-  load_shipped("prism", &scene);
+  OWNED(abbe_scene, scene) = shipped_scene("prism");
   draw_both(&scene, e, apart);
   for (int c = 0; c < 3; c++) assert_true(apart[c] < 0.02);
 }

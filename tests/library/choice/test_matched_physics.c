@@ -5,10 +5,9 @@
 #include "library/choice/matched_physics.h"
 
 TEST(what_the_plan_follows) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_plan plan;
   abbe_physics physics = {0};
-  load_shipped("gem", &scene);
+  OWNED(abbe_scene, scene) = shipped_scene("gem");
   OK(abbe_matched_physics(&scene, 0, 0, &physics, &error));
   OK(abbe_plan_make(&scene, NULL, &plan, &error));
   assert_true(physics.matched);

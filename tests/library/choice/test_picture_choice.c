@@ -39,7 +39,7 @@ static void choose(abbe_picture_request request, abbe_picture_choice *out) {
 
 static void begin(void) {
   snprintf(path, sizeof path, "/tmp/abbe_test_picture_choice_%ld.yaml", (long)getpid());
-  load_text(SCENE, &scene);
+  scene = scene_of(SCENE);
 }
 
 static void finish(void) {
@@ -105,11 +105,9 @@ TEST(promises_are_told_by_the_yardstick) {
   assert_int_equal(c.point->tool, ABBE_PICTURE_TRACE);
   assert_int_equal(c.point->passes, 8);
   assert_true(c.kept && c.timed && c.spent_ms > 0);
-  const abbe_trace_times_desc desc = {.passes = ABBE_PICTURE_YARDSTICK_PASSES,
-                                      .photons = ABBE_PICTURE_YARDSTICK_PHOTONS,
-                                      .width = 16,
-                                      .height = 16,
-                                      .frames = 1};
+  const abbe_trace_times_desc desc =
+      FIELDS(.passes = ABBE_PICTURE_YARDSTICK_PASSES, .photons = ABBE_PICTURE_YARDSTICK_PHOTONS,
+             .width = 16, .height = 16, .frames = 1);
   OK(abbe_trace_times_measure(&scene, &desc, &times, NULL, &error));
   assert_true(times.own_de > 0);
   assert_near(c.promised_error, 1e-9 * times.own_de, 1e-20);
@@ -154,8 +152,9 @@ TEST(told_or_expected) {
   assert_says(&c, "2, expected (not checked: the budget left no time for it)");
   c.passes = 4;
   c.met = (abbe_pass_error){NAN, NAN};
-  assert_says(&c, "2, expected (not checked: so few passes as the budget left time for are too "
-                  "noisy to tell)");
+  assert_says(
+      &c,
+      "2, expected (not checked: so few passes as the budget left time for are too noisy to tell)");
   c.met = (abbe_pass_error){1.5, 1.75};
   assert_says(&c, "about 1.5 (at most 1.75), told by 4 passes, against which the picture is held; "
                   "expected were 2");

@@ -12,8 +12,7 @@ static void absorb(abbe_spectrum **to, double per_m) {
 }
 
 TEST(crystals_have_axes_two_indices_and_two_losses) {
-  abbe_scene scene;
-  load_text(SCENE BALL("tourmaline-green"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(SCENE BALL("tourmaline-green"));
   abbe_object *ball = &scene.object[1];
   abbe_material *crystal = (abbe_material *)ball->material;
   absorb(&crystal->attenuation, 10);
@@ -30,5 +29,4 @@ TEST(crystals_have_axes_two_indices_and_two_losses) {
   absorb(&crystal->attenuation_yz[1], 20);
   hash[3] = abbe_scene_hash(&scene);
   for (int i = 1; i < 4; i++) assert_true(hash[i] != hash[i - 1]);
-  abbe_scene_free(&scene);
 }

@@ -65,10 +65,7 @@ static const char design_d[] = "GemCad 5.0\n"
 
 static inline abbe_cut design_parse(const char *text) {
   abbe_cut cut;
-  abbe_error error = {0};
-  if (abbe_cut_asc_parse(text, strlen(text), "design.asc", &cut, NULL, &error) != ABBE_OK)
-    print_error("%s\n", error.text);
-  assert_int_equal(error.code, ABBE_OK);
+  OK(abbe_cut_asc_parse(text, strlen(text), "design.asc", &cut, NULL, &error));
   return cut;
 }
 

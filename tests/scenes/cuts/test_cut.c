@@ -31,7 +31,7 @@ TEST(directions_are_those_of_the_gear) {
 TEST(angles_and_indices_come_back_from_planes) {
   const char *const designs[] = {design_a, design_b, design_c, design_d};
   for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
-    abbe_cut cut = design_parse(designs[i]);
+    OWNED(abbe_cut, cut) = design_parse(designs[i]);
     for (size_t f = 0; f < cut.facet_count; f++) {
       const abbe_cut_facet *facet = &cut.facet[f];
       const double angle = cut.tier[facet->tier].angle_deg;
@@ -41,12 +41,11 @@ TEST(angles_and_indices_come_back_from_planes) {
       const double index = angle == 0 ? flat : facet->index;
       assert_near(abbe_cut_index(&cut, facet->n), index, 1e-9);
     }
-    abbe_cut_free(&cut);
   }
 }
 
 TEST(names_go_on_within_a_tier) {
-  abbe_cut cut = design_parse(design_d);
+  OWNED(abbe_cut, cut) = design_parse(design_d);
   assert_string_equal(abbe_cut_facet_name(&cut, 0), "87");
   assert_string_equal(abbe_cut_facet_name(&cut, 1), "87");
   assert_string_equal(abbe_cut_facet_name(&cut, 2), "G");
@@ -58,7 +57,6 @@ TEST(names_go_on_within_a_tier) {
   assert_string_equal(abbe_cut_facet_name(&cut, 20), "");
   cut.facet[2].name = strdup("late");
   assert_string_equal(abbe_cut_facet_name(&cut, 0), "late");
-  abbe_cut_free(&cut);
 }
 
 TEST(what_no_stone_has_is_refused) {

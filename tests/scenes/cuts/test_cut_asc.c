@@ -3,7 +3,7 @@
 #include "tests/scenes/cuts/designs.h"
 
 TEST(design_d_has_all_of_the_grammar) {
-  abbe_cut cut = design_parse(design_d);
+  OWNED(abbe_cut, cut) = design_parse(design_d);
   assert_int_equal(cut.gear, -96);
   assert_near(cut.offset, 48, 0);
   assert_int_equal(cut.folds, 3);
@@ -19,14 +19,12 @@ TEST(design_d_has_all_of_the_grammar) {
   assert_true(cut.tier[4].angle_deg == 0 && signbit(cut.tier[4].angle_deg));
   assert_near(cut.facet[12].n[2], -1, 0);
   assert_near(cut.facet[17].n[2], 1, 0);
-  abbe_cut_free(&cut);
 }
 
 static void expect_notes(const char *text, const char *a, const char *b) {
-  OWNED(abbe_cut, cut);
   OWNED(abbe_report, report) = {0};
   char all[4096] = "";
-  OK(abbe_cut_asc_parse(text, strlen(text), "x.asc", &cut, &report, &error));
+  MADE(abbe_cut, cut, abbe_cut_asc_parse(text, strlen(text), "x.asc", &cut, &report, &error));
   for (size_t i = 0; i < report.count; i++) {
     strncat(all, report.note[i].text, sizeof all - strlen(all) - 2);
     strcat(all, "\n");
@@ -38,12 +36,12 @@ static void expect_notes(const char *text, const char *a, const char *b) {
 #define CUBE "a 90 1 96 24 48 72\na 0 1\na -0 1\n"
 
 TEST(odd_lines_are_met) {
-  const char glued[] = "\xef\xbb\xbf"
-                       "GemCad 4.51\r\ng64 0.0\r\ny8y\r\nI1.54\r\nHTitle \xb0\r\n; g 3\r\n"
-                       "a \xe2\x88\x92"
-                       "90 1 64 n top 16\r\n 32 48 G rough\r\nG and polish\r\na0 1\r\n"
-                       "a 0 -2 n C\r\n\r\nF one\r\nF two\r\n";
-  abbe_cut cut = design_parse(glued);
+  const char glued[] =
+      "\xef\xbb\xbfGemCad 4.51\r\ng64 0.0\r\ny8y\r\nI1.54\r\nHTitle \xb0\r\n; g 3\r\n"
+      "a \xe2\x88\x92"
+      "90 1 64 n top 16\r\n 32 48 G rough\r\nG and polish\r\na0 1\r\n"
+      "a 0 -2 n C\r\n\r\nF one\r\nF two\r\n";
+  OWNED(abbe_cut, cut) = design_parse(glued);
   assert_int_equal(cut.gear, 64);
   assert_int_equal(cut.folds, 8);
   assert_true(cut.mirror);
@@ -60,7 +58,6 @@ TEST(odd_lines_are_met) {
   assert_int_equal(cut.gear, 96);
   assert_near(cut.offset, 12, 0);
   assert_near(cut.facet[4].index, 12, 0);
-  abbe_cut_free(&cut);
   expect_notes(CUBE, "96 teeth are assumed", "");
   expect_notes("g 96 0\ng 96 0\nweather is fine\n" CUBE, "the last one holds", "weather");
   expect_notes("g 96 0\na 30 -4 96 what n\n" CUBE, "magnitude", "'what'");
@@ -124,10 +121,10 @@ static char *written(const abbe_cut *cut) {
 TEST(what_is_written_reads_back) {
   const char *const designs[] = {design_a, design_b, design_c, design_d};
   for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
-    abbe_cut cut = design_parse(designs[i]);
+    OWNED(abbe_cut, cut) = design_parse(designs[i]);
     if (i == 2) cut.tier[0].distance = 1 / 3.0, abbe_cut_place(&cut);
     FREED char *text = written(&cut);
-    abbe_cut back = design_parse(text);
+    OWNED(abbe_cut, back) = design_parse(text);
     assert_int_equal(back.gear, cut.gear);
     assert_int_equal(back.facet_count, cut.facet_count);
     assert_int_equal(back.tier_count, cut.tier_count);
@@ -142,14 +139,11 @@ TEST(what_is_written_reads_back) {
       assert_string_equal(back.tier[3].instruction, cut.tier[3].instruction);
     FREED char *again = written(&back);
     assert_string_equal(text, again);
-    abbe_cut_free(&back);
-    abbe_cut_free(&cut);
   }
 }
 
 TEST(gemcads_own_digits_stay) {
-  abbe_cut cut = design_parse(design_a);
+  OWNED(abbe_cut, cut) = design_parse(design_a);
   FREED char *text = written(&cut);
   assert_string_equal(text, design_a);
-  abbe_cut_free(&cut);
 }

@@ -9,11 +9,9 @@
 #include <unistd.h>
 
 static void write_sheet(const char *path, const char *text, const char *note) {
-  abbe_cut cut = design_parse(text);
-  OWNED(abbe_cut_polyhedron, p);
-  OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
+  OWNED(abbe_cut, cut) = design_parse(text);
+  MADE(abbe_cut_polyhedron, p, abbe_cut_polyhedron_make(&cut, 0, &p, &error));
   OK(abbe_cut_diagram_write(path, &cut, &p, note, 1.54, &error));
-  abbe_cut_free(&cut);
 }
 
 /* Each face that is seen is one closed path, filled and outlined: of design A 33 from above, 24
@@ -40,12 +38,10 @@ TEST(flat_tiers_are_marked) {
   for (int i = 0; i < 2; i++) {
     FREED char *data = NULL;
     size_t size;
-    abbe_cut cut = design_parse(design_a);
-    OWNED(abbe_cut_polyhedron, p);
-    OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
+    OWNED(abbe_cut, cut) = design_parse(design_a);
+    MADE(abbe_cut_polyhedron, p, abbe_cut_polyhedron_make(&cut, 0, &p, &error));
     OK(abbe_cut_diagram_write("cut_diagram_test.svg", &cut, &p, NULL, i == 0 ? 1.544 : 1.333,
                               &error));
-    abbe_cut_free(&cut);
     OK(abbe_file_read("cut_diagram_test.svg", 1 << 22, &data, &size, &error));
     assert_int_equal(unlink("cut_diagram_test.svg"), 0);
     red[i] = 0;
@@ -78,18 +74,15 @@ TEST(a_png_is_as_long_as_its_table) {
 }
 
 TEST(a_pdf_and_what_is_refused) {
-  char *data;
+  FREED char *data = NULL;
   size_t size;
   write_sheet("cut_diagram_test.pdf", design_d, NULL);
   OK(abbe_file_read("cut_diagram_test.pdf", 1 << 22, &data, &size, &error));
   assert_memory_equal(data, "%PDF", 4);
-  free(data);
   assert_int_equal(unlink("cut_diagram_test.pdf"), 0);
-  abbe_cut cut = design_parse(design_c);
-  OWNED(abbe_cut_polyhedron, p);
-  OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
+  OWNED(abbe_cut, cut) = design_parse(design_c);
+  MADE(abbe_cut_polyhedron, p, abbe_cut_polyhedron_make(&cut, 0, &p, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "ends with .pdf, .svg or .png",
           abbe_cut_diagram_write("sheet.jpg", &cut, &p, NULL, 0, &error));
   REFUSED(ABBE_IO, "", abbe_cut_diagram_write("no/such/folder/a.pdf", &cut, &p, NULL, 0, &error));
-  abbe_cut_free(&cut);
 }

@@ -6,15 +6,13 @@
 #include <unistd.h>
 
 TEST(the_ending_says_the_kind) {
-  char folder[] = "/tmp/abbe_cut_XXXXXX", path[64];
+  char folder[] = "/tmp/abbe_cut_XXXXXX";
   const char text[] = "g 96 0\na 90 1 96 24 48 72\na 0 1\na -0 1\n";
-  abbe_cut cut;
   assert_non_null(mkdtemp(folder));
-  snprintf(path, sizeof path, "%s/box.ASC", folder);
+  const char *path = printed("%s/box.ASC", folder);
   OK(abbe_file_write(path, text, strlen(text), &error));
-  OK(abbe_cut_file_read(path, &cut, NULL, &error));
+  MADE(abbe_cut, cut, abbe_cut_file_read(path, &cut, NULL, &error));
   assert_int_equal(cut.facet_count, 6);
-  abbe_cut_free(&cut);
   unlink(path);
   rmdir(folder);
 }
@@ -30,13 +28,13 @@ TEST(others_are_refused) {
 
 /* Planes that close no stone, however well they are written. */
 TEST(an_open_design_is_named) {
-  char folder[] = "/tmp/abbe_cut_XXXXXX", path[64];
+  char folder[] = "/tmp/abbe_cut_XXXXXX";
   const char open[] = "g 96 0\na 90 1 96 24 48 72\n",
              box[] = "g 96 0\na 90 1 96 24 48 72\na 0 1\na -0 1\n";
-  abbe_cut cut;
-  abbe_cut_polyhedron stone;
+  OWNED(abbe_cut, cut) = {0};
+  OWNED(abbe_cut_polyhedron, stone) = {0};
   assert_non_null(mkdtemp(folder));
-  snprintf(path, sizeof path, "%s/open.asc", folder);
+  const char *path = printed("%s/open.asc", folder);
   OK(abbe_file_write(path, open, strlen(open), &error));
   REFUSED(ABBE_GEOMETRY, path, abbe_cut_file_read_stone(path, 1e-6, &cut, &stone, NULL, &error));
   assert_contains(last_error.text, "leave the stone open on top: the crown lacks facets");
@@ -45,8 +43,6 @@ TEST(an_open_design_is_named) {
   OK(abbe_file_write(path, box, strlen(box), &error));
   OK(abbe_cut_file_read_stone(path, 1e-6, &cut, &stone, NULL, &error));
   assert_int_equal(stone.face_count, 6);
-  abbe_cut_polyhedron_free(&stone);
-  abbe_cut_free(&cut);
   unlink(path);
   rmdir(folder);
 }

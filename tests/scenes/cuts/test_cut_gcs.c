@@ -27,16 +27,12 @@
 
 static abbe_cut read(const char *text) {
   abbe_cut cut;
-  abbe_error error = {0};
-  if (abbe_cut_gcs_parse(text, strlen(text), "x.gcs", &cut, NULL, &error) != ABBE_OK)
-    print_error("%s\n", error.text);
-  assert_int_equal(error.code, ABBE_OK);
+  OK(abbe_cut_gcs_parse(text, strlen(text), "x.gcs", &cut, NULL, &error));
   return cut;
 }
 
 TEST(a_design_is_read) {
-  abbe_cut cut = read(HEAD TABLE REST);
-  OWNED(abbe_cut_polyhedron, p);
+  OWNED(abbe_cut, cut) = read(HEAD TABLE REST);
   assert_int_equal(cut.gear, 80);
   assert_int_equal(cut.folds, 4);
   assert_true(cut.mirror);
@@ -53,26 +49,24 @@ TEST(a_design_is_read) {
   assert_near(cut.facet[5].n[1], sqrt(0.5), 1e-15); /* its index 0 is in the direction of y */
   assert_near(cut.facet[5].index, 80, 0);
   assert_near(cut.facet[8].index, 20, 0);
-  OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
+  MADE(abbe_cut_polyhedron, p, abbe_cut_polyhedron_make(&cut, 0, &p, &error));
   assert_int_equal(p.vertex_count, 9);
   assert_int_equal(p.face_count, 9);
   assert_near(p.min[2], -0.8 * sqrt(2), 1e-12);
-  abbe_cut_free(&cut);
 }
 
 /* Facets without normals have them from the angle and their index. */
 TEST(a_missing_normal_is_found) {
-  abbe_cut with = read(HEAD TABLE REST);
-  abbe_cut without = read(
-      HEAD TABLE "<tier angle='90' depth='1'><facet index_angle='0'/><facet index_angle='270'/>"
-                 "<facet index_angle='180'/><facet index_angle='90'/></tier>"
-                 "<tier angle='135' depth='0.8'><facet index_angle='0'/><facet index_angle='270'/>"
-                 "<facet index_angle='180'/><facet index_angle='90'/></tier></GemCutStudio>");
+  OWNED(abbe_cut, with) = read(HEAD TABLE REST);
+  OWNED(abbe_cut, without) =
+      read(HEAD TABLE
+           "<tier angle='90' depth='1'><facet index_angle='0'/><facet index_angle='270'/><facet "
+           "index_angle='180'/><facet index_angle='90'/></tier><tier angle='135' "
+           "depth='0.8'><facet index_angle='0'/><facet index_angle='270'/><facet "
+           "index_angle='180'/><facet index_angle='90'/></tier></GemCutStudio>");
   for (size_t i = 0; i < 9; i++)
     for (int axis = 0; axis < 3; axis++)
       assert_near(without.facet[i].n[axis], with.facet[i].n[axis], 1e-15);
-  abbe_cut_free(&with);
-  abbe_cut_free(&without);
 }
 
 /* The symmetry tells people something, and stones nothing. */
@@ -80,11 +74,9 @@ TEST(a_strange_symmetry_is_passed_over) {
   static const char *const said[] = {"symmetry='-1'", "symmetry='2.5'", "symmetry='round'",
                                      "symmetry='99999999'", "mirror='0'"};
   for (size_t i = 0; i < sizeof said / sizeof *said; i++) {
-    char text[2500];
-    OWNED(abbe_cut, cut);
     OWNED(abbe_report, report) = {0};
-    snprintf(text, sizeof text, "<GemCutStudio><index gear='80' %s/>" TABLE REST, said[i]);
-    OK(abbe_cut_gcs_parse(text, strlen(text), "x.gcs", &cut, &report, &error));
+    const char *text = printed("<GemCutStudio><index gear='80' %s/>" TABLE REST, said[i]);
+    MADE(abbe_cut, cut, abbe_cut_gcs_parse(text, strlen(text), "x.gcs", &cut, &report, &error));
     assert_int_equal(cut.folds, 0);
     assert_false(cut.mirror);
     assert_int_equal(report.count, i < 4);
@@ -132,13 +124,12 @@ TEST(what_reaches_outside_is_refused) {
 }
 
 TEST(names_of_encodings_are_heeded) {
-  abbe_cut cut = read("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<GemCutStudio>"
-                      "<info title=\"\xc3\xa9\"/><tier angle='45' depth='1'>"
-                      "<facet index_angle='0'/><facet index_angle='1'/><facet index_angle='2'/>"
-                      "<facet index_angle='3'/></tier></GemCutStudio>");
+  OWNED(abbe_cut, cut) = read(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<GemCutStudio><info title=\"\xc3\xa9\"/><tier "
+      "angle='45' depth='1'><facet index_angle='0'/><facet index_angle='1'/><facet "
+      "index_angle='2'/><facet index_angle='3'/></tier></GemCutStudio>");
   assert_string_equal(cut.heading[0], "\xc3\xa9");
   assert_int_equal(cut.gear, 96);
-  abbe_cut_free(&cut);
 }
 
 /* What is written has the same planes, but for size and height, and is read back as the same stone.
@@ -146,18 +137,16 @@ TEST(names_of_encodings_are_heeded) {
 TEST(what_is_written_is_read_back) {
   const char *const designs[] = {design_a, design_b, design_c, design_d};
   for (int k = 0; k < 4; k++) {
-    abbe_cut cut = design_parse(designs[k]);
-    OWNED(abbe_cut_polyhedron, p);
-    OWNED(abbe_cut_polyhedron, q);
+    OWNED(abbe_cut, cut) = design_parse(designs[k]);
     FREED char *text = NULL;
     size_t size = 0;
     FILE *to = open_memstream(&text, &size);
     assert_non_null(to);
-    OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
+    MADE(abbe_cut_polyhedron, p, abbe_cut_polyhedron_make(&cut, 0, &p, &error));
     OK(abbe_cut_gcs_write(&cut, &p, to, NULL, &error));
     assert_int_equal(fclose(to), 0);
-    abbe_cut back = read(text);
-    OK(abbe_cut_polyhedron_make(&back, 0, &q, &error));
+    OWNED(abbe_cut, back) = read(text);
+    MADE(abbe_cut_polyhedron, q, abbe_cut_polyhedron_make(&back, 0, &q, &error));
     assert_int_equal(q.vertex_count, p.vertex_count);
     assert_int_equal(q.edge_count, p.edge_count);
     assert_int_equal(q.face_count, p.face_count);
@@ -177,7 +166,5 @@ TEST(what_is_written_is_read_back) {
       }
       assert_near(nearest, 0, 1e-12);
     }
-    abbe_cut_free(&cut);
-    abbe_cut_free(&back);
   }
 }

@@ -9,8 +9,7 @@ typedef struct file {
 
 static file written(const abbe_cut *cut) {
   file f = {0};
-  OWNED(abbe_cut_polyhedron, p);
-  OK(abbe_cut_polyhedron_make(cut, 0, &p, &error));
+  MADE(abbe_cut_polyhedron, p, abbe_cut_polyhedron_make(cut, 0, &p, &error));
   FILE *to = open_memstream(&f.data, &f.size);
   OK(abbe_cut_gem_write(cut, &p, to, NULL, &error));
   fclose(to);
@@ -20,9 +19,9 @@ static file written(const abbe_cut *cut) {
 TEST(what_is_written_reads_back) {
   const char *const designs[] = {design_a, design_b, design_c, design_d};
   for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
-    abbe_cut cut = design_parse(designs[i]), back;
+    OWNED(abbe_cut, cut) = design_parse(designs[i]);
     file f = written(&cut);
-    OK(abbe_cut_gem_parse(f.data, f.size, "x.gem", &back, NULL, &error));
+    MADE(abbe_cut, back, abbe_cut_gem_parse(f.data, f.size, "x.gem", &back, NULL, &error));
     assert_int_equal(back.gear, cut.gear);
     assert_near(back.offset, cut.offset, 0);
     assert_int_equal(back.folds, cut.folds);
@@ -47,14 +46,12 @@ TEST(what_is_written_reads_back) {
     }
     if (cut.heading[0]) assert_string_equal(back.heading[0], cut.heading[0]);
     free(f.data);
-    abbe_cut_free(&back);
-    abbe_cut_free(&cut);
   }
 }
 
 /* The layout to the byte: a facet's plane is n / d, its tier from 1, its name, its corners. */
 TEST(the_layout_is_gemcads) {
-  abbe_cut cut =
+  OWNED(abbe_cut, cut) =
       design_parse("g 96 0\nI 1.5\nH Box\na 90 2 96 n G 24 48 72 G Cut\na 0 1\na -0 1\n");
   file f = written(&cut);
   const unsigned char *at = (const unsigned char *)f.data;
@@ -72,21 +69,20 @@ TEST(the_layout_is_gemcads) {
   assert_memory_equal(at + trailer + 28, "\xff\x7f\0\0", 4);
   assert_int_equal(f.size, trailer + 8 + 12 + 8 + 4 + 8 + 8 + 3);
   free(f.data);
-  abbe_cut_free(&cut);
 }
 
 TEST(every_truncation_is_refused) {
-  abbe_cut cut = design_parse(design_d), back;
+  OWNED(abbe_cut, cut) = design_parse(design_d);
+  abbe_cut back;
   file f = written(&cut);
-  abbe_cut_free(&cut);
   for (size_t size = 0; size < f.size; size++) {
-    char *part = malloc(size + 1); /* of its own size, so that a sanitizer sees what is beyond */
+    FREED char *part =
+        malloc(size + 1); /* of its own size, so that a sanitizer sees what is beyond */
     memcpy(part, f.data, size);
     REFUSED(ABBE_PARSE, "the file ends within",
             abbe_cut_gem_parse(part, size, "x.gem", &back, NULL, &error));
     assert_contains(last_error.text, "x.gem: byte ");
     assert_null(back.facet);
-    free(part);
   }
   free(f.data);
 }
@@ -104,7 +100,7 @@ static void refuse(const file *f, size_t at, const void *bytes, size_t count, co
 }
 
 TEST(hostile_values_are_refused) {
-  abbe_cut cut = design_parse("g 96 0\nI 1.5\na 90 1 96 24 48 72\na 0 1\na -0 1\n"), back;
+  OWNED(abbe_cut, cut) = design_parse("g 96 0\nI 1.5\na 90 1 96 24 48 72\na 0 1\na -0 1\n");
   file f = written(&cut);
   const double zero[3] = {0}, none[3] = {NAN, 0, 0}, far[3] = {1e300, 0, 0};
   refuse(&f, 0, zero, sizeof zero, "x.gem: byte 0: facet 1 has no plane");
@@ -117,37 +113,28 @@ TEST(hostile_values_are_refused) {
   refuse(&f, trailer + 24, none, 8, "the gear's offset");
   const double end = -99999;
   refuse(&f, 0, &end, sizeof end, "byte");
-  abbe_report report = {0};
-  char *longer = calloc(1, f.size + 8);
+  OWNED(abbe_report, report) = {0};
+  FREED char *longer = calloc(1, f.size + 8);
   memcpy(longer, f.data, f.size);
   memcpy(longer + f.size, "\7preform", 8);
-  OK(abbe_cut_gem_parse(longer, f.size + 8, "x.gem", &back, &report, &error));
+  MADE(abbe_cut, back, abbe_cut_gem_parse(longer, f.size + 8, "x.gem", &back, &report, &error));
   assert_int_equal(report.kinds[ABBE_NOTE_LOST], 1);
-  abbe_cut_free(&back);
-  abbe_report_free(&report);
-  free(longer);
   free(f.data);
-  abbe_cut_free(&cut);
 }
 
 TEST(long_texts_are_cut_and_told) {
   char text[700] = "g 96 0\na 0 1 n K G ";
   memset(text + strlen(text), 'x', 400);
   strcat(text, "\na 90 1 96 24 48 72\na -0 1\n");
-  abbe_cut cut = design_parse(text), back;
-  OWNED(abbe_cut_polyhedron, p);
-  abbe_report report = {0};
+  OWNED(abbe_cut, cut) = design_parse(text);
   file f = {0};
-  OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
+  MADE(abbe_cut_polyhedron, p, abbe_cut_polyhedron_make(&cut, 0, &p, &error));
   FILE *to = open_memstream(&f.data, &f.size);
-  OK(abbe_cut_gem_write(&cut, &p, to, &report, &error));
+  MADE(abbe_report, report, abbe_cut_gem_write(&cut, &p, to, &report, &error));
   fclose(to);
   assert_int_equal(report.kinds[ABBE_NOTE_LOST], 1);
-  OK(abbe_cut_gem_parse(f.data, f.size, "x.gem", &back, NULL, &error));
+  MADE(abbe_cut, back, abbe_cut_gem_parse(f.data, f.size, "x.gem", &back, NULL, &error));
   assert_int_equal(strlen(back.tier[0].instruction), 253);
   assert_string_equal(back.facet[0].name, "K");
-  abbe_report_free(&report);
   free(f.data);
-  abbe_cut_free(&back);
-  abbe_cut_free(&cut);
 }

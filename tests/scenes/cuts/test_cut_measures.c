@@ -4,12 +4,10 @@
 #include "tests/scenes/cuts/designs.h"
 
 static abbe_cut_measures measure(const char *text) {
-  abbe_cut cut = design_parse(text);
-  OWNED(abbe_cut_polyhedron, p);
+  OWNED(abbe_cut, cut) = design_parse(text);
   abbe_cut_measures m;
-  OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
+  MADE(abbe_cut_polyhedron, p, abbe_cut_polyhedron_make(&cut, 0, &p, &error));
   abbe_cut_measures_make(&cut, &p, &m);
-  abbe_cut_free(&cut);
   return m;
 }
 

@@ -6,24 +6,20 @@
 
 static abbe_cut_polyhedron stone(const abbe_cut *cut, double weld) {
   abbe_cut_polyhedron p;
-  abbe_error error = {0};
-  if (abbe_cut_polyhedron_make(cut, weld, &p, &error) != ABBE_OK) print_error("%s\n", error.text);
-  assert_int_equal(error.code, ABBE_OK);
+  OK(abbe_cut_polyhedron_make(cut, weld, &p, &error));
   return p;
 }
 
 static void expect(const char *text, size_t v, size_t e, size_t f, double volume, double low,
                    double high) {
-  abbe_cut cut = design_parse(text);
-  abbe_cut_polyhedron p = stone(&cut, 0);
+  OWNED(abbe_cut, cut) = design_parse(text);
+  OWNED(abbe_cut_polyhedron, p) = stone(&cut, 0);
   assert_int_equal(p.vertex_count, v);
   assert_int_equal(p.edge_count, e);
   assert_int_equal(p.face_count, f);
   if (volume > 0) assert_near(p.volume, volume, 5e-7);
   assert_near(p.min[2], low, 5e-7);
   if (high > 0) assert_near(p.max[2], high, 5e-7);
-  abbe_cut_polyhedron_free(&p);
-  abbe_cut_free(&cut);
 }
 
 TEST(designs_have_their_counts) {
@@ -34,16 +30,14 @@ TEST(designs_have_their_counts) {
 }
 
 TEST(a_step_cut_is_the_same_at_any_weld) {
-  abbe_cut cut = design_parse(design_c);
+  OWNED(abbe_cut, cut) = design_parse(design_c);
   for (double weld = 1e-12; weld < 2e-4; weld *= 10) {
-    abbe_cut_polyhedron p = stone(&cut, weld);
+    OWNED(abbe_cut_polyhedron, p) = stone(&cut, weld);
     assert_int_equal(p.vertex_count, 21);
     assert_int_equal(p.edge_count, 40);
     assert_int_equal(p.face_count, 21);
     assert_near(p.volume, 2.811214, 5e-7);
-    abbe_cut_polyhedron_free(&p);
   }
-  abbe_cut_free(&cut);
 }
 
 TEST(bounds_are_known_and_not_mirrored) {
@@ -73,14 +67,12 @@ TEST(bounds_are_known_and_not_mirrored) {
 
 /* Meets of design A are good to its eight digits: without a weld each is parted by rounding. */
 TEST(corners_that_nearly_meet_are_one) {
-  abbe_cut cut = design_parse(design_a);
+  OWNED(abbe_cut, cut) = design_parse(design_a);
   for (double weld = 1e-12; weld < 2e-4; weld *= 10) {
-    abbe_cut_polyhedron p = stone(&cut, weld);
+    OWNED(abbe_cut_polyhedron, p) = stone(&cut, weld);
     assert_int_equal(p.vertex_count + p.face_count, p.edge_count + 2);
     assert_true(weld < 1e-7 ? p.vertex_count >= 57 : p.vertex_count == 57);
-    abbe_cut_polyhedron_free(&p);
   }
-  abbe_cut_free(&cut);
 }
 
 static void refuse(const abbe_cut *cut, double weld, abbe_result code, const char *part) {
@@ -98,15 +90,14 @@ TEST(the_open_side_is_named) {
                  {"g 96 0\na 90 1 96 24 48 72\na 0 1\n", "open below: the pavilion lacks facets"},
                  {"g 96 0\na 90 1 96 24 72\na 0 1\na -0 1\n", "at the side, about index 48"}};
   for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
-    abbe_cut cut = design_parse(designs[i].text);
+    OWNED(abbe_cut, cut) = design_parse(designs[i].text);
     abbe_cut_polyhedron p;
     REFUSED(ABBE_GEOMETRY, designs[i].words, abbe_cut_polyhedron_make(&cut, 0, &p, &error));
-    abbe_cut_free(&cut);
   }
 }
 
 TEST(open_stones_are_refused) {
-  abbe_cut cut = design_parse(design_c_open);
+  OWNED(abbe_cut, cut) = design_parse(design_c_open);
   refuse(&cut, 0, ABBE_GEOMETRY, "open");
   abbe_cut_free(&cut);
   /* all upright: normals lie in one plane */
@@ -122,27 +113,24 @@ TEST(open_stones_are_refused) {
   refuse(&cut, NAN, ABBE_INVALID_ARGUMENT, "welded by");
   cut.facet[3].d = 0;
   refuse(&cut, 0, ABBE_SCHEMA, "facet 4");
-  abbe_cut_free(&cut);
 }
 
 TEST(doubles_are_told) {
-  abbe_cut cut = design_parse("g 96 0\na 90 1 96 24 48 72\na 0 1 0\na -0 1 0\na 90 1 24\n");
-  abbe_cut_polyhedron p = stone(&cut, 0);
+  OWNED(abbe_cut, cut) = design_parse("g 96 0\na 90 1 96 24 48 72\na 0 1 0\na -0 1 0\na 90 1 24\n");
+  OWNED(abbe_cut_polyhedron, p) = stone(&cut, 0);
   assert_int_equal(p.face_count, 6);
   assert_int_equal(p.vertex_count, 8);
   assert_int_equal(p.fate[6], ABBE_CUT_DOUBLE);
   assert_int_equal(p.fate[1], ABBE_CUT_FACE);
   assert_near(p.volume, 8, 1e-12);
   assert_near(p.area, 24, 1e-12);
-  abbe_cut_polyhedron_free(&p);
-  abbe_cut_free(&cut);
 }
 
 TEST(every_face_lies_in_its_plane) {
   const char *const designs[] = {design_a, design_b, design_c, design_d};
   for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
-    abbe_cut cut = design_parse(designs[i]);
-    abbe_cut_polyhedron p = stone(&cut, 0);
+    OWNED(abbe_cut, cut) = design_parse(designs[i]);
+    OWNED(abbe_cut_polyhedron, p) = stone(&cut, 0);
     for (size_t f = 0; f < p.face_count; f++) {
       assert_true(p.face[f].area > 0);
       assert_true(f == 0 || p.face[f].facet > p.face[f - 1].facet);
@@ -150,8 +138,6 @@ TEST(every_face_lies_in_its_plane) {
     for (size_t v = 0; v < p.vertex_count; v++)
       for (size_t k = 0; k < cut.facet_count; k++)
         assert_true(abbe_vector_dot(cut.facet[k].n, p.vertex[v]) - cut.facet[k].d < 2e-6);
-    abbe_cut_polyhedron_free(&p);
-    abbe_cut_free(&cut);
   }
 }
 
@@ -159,13 +145,12 @@ TEST(triangles_are_a_closed_convex_solid) {
   const char *const designs[] = {design_a, design_b, design_c, design_d};
   const size_t planes[] = {73, 73, 21, 17};
   for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
-    abbe_cut cut = design_parse(designs[i]);
-    abbe_cut_polyhedron p = stone(&cut, 0);
-    OWNED(abbe_mesh, m);
+    OWNED(abbe_cut, cut) = design_parse(designs[i]);
+    OWNED(abbe_cut_polyhedron, p) = stone(&cut, 0);
     abbe_mesh_report report;
     abbe_convex convex;
     double plane[256][4];
-    OK(abbe_cut_polyhedron_mesh(&cut, &p, 0.01, &m, &error));
+    MADE(abbe_mesh, m, abbe_cut_polyhedron_mesh(&cut, &p, 0.01, &m, &error));
     OK(abbe_mesh_check(&m, &report, &error));
     assert_int_equal(report.open_edges + report.crowded_edges + report.flipped_edges, 0);
     assert_int_equal(report.degenerate_faces, 0);
@@ -173,7 +158,5 @@ TEST(triangles_are_a_closed_convex_solid) {
     OK(abbe_convex_find(&m, 256, plane, NULL, &convex, &error));
     assert_int_equal(convex.verdict, ABBE_CONVEX_SOLID);
     assert_int_equal(convex.planes, planes[i]);
-    abbe_cut_polyhedron_free(&p);
-    abbe_cut_free(&cut);
   }
 }

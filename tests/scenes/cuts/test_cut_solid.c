@@ -34,13 +34,12 @@ static void write_to(const char *path, const abbe_cut *cut, const abbe_cut_polyh
 
 /* Volume and bounds are the stone's, in the unit of the format; the normals look outwards. */
 static void check(const char *text, double scale, int format) {
-  abbe_cut cut = design_parse(text);
-  abbe_cut_polyhedron p = stone_of(&cut);
-  abbe_mesh mesh;
+  OWNED(abbe_cut, cut) = design_parse(text);
+  OWNED(abbe_cut_polyhedron, p) = stone_of(&cut);
   abbe_mesh_report report;
   const double unit = format == 2 ? scale : 1e3 * scale, size = unit * (p.max[0] - p.min[0]);
   write_to(paths[format], &cut, &p, scale, NULL);
-  OK(abbe_mesh_load(paths[format], ABBE_NORMALS_FLAT, &mesh, NULL, &error));
+  MADE(abbe_mesh, mesh, abbe_mesh_load(paths[format], ABBE_NORMALS_FLAT, &mesh, NULL, &error));
   OK(abbe_mesh_check(&mesh, &report, &error));
   assert_near(report.volume, p.volume * pow(unit, 3), 1e-5 * p.volume * pow(unit, 3));
   assert_int_equal(report.open_edges + report.flipped_edges + report.crowded_edges, 0);
@@ -48,10 +47,7 @@ static void check(const char *text, double scale, int format) {
   assert_near(report.max[0], unit * p.max[0], 1e-6 * size);
   for (int k = 1; k < 3; k++) assert_near(report.max[k], unit * p.max[k], 1e-6 * size);
   assert_int_equal(mesh.face_count, p.corner_count - 2 * p.face_count);
-  abbe_mesh_free(&mesh);
   assert_int_equal(unlink(paths[format]), 0);
-  abbe_cut_polyhedron_free(&p);
-  abbe_cut_free(&cut);
 }
 
 TEST(what_is_written_reads_back) {
@@ -78,13 +74,12 @@ static const cJSON *under(const cJSON *object, const char *key) {
 
 /* Diamond: n_d 2.4175, V_d 55.3 by the record; clear, so no colour. */
 TEST(gltf_knows_the_stone) {
-  abbe_cut cut = design_parse(design_b);
-  abbe_cut_polyhedron p = stone_of(&cut);
-  OWNED(abbe_material_table, table);
+  OWNED(abbe_cut, cut) = design_parse(design_b);
+  OWNED(abbe_cut_polyhedron, p) = stone_of(&cut);
   const abbe_material *diamond;
-  char *data;
+  FREED char *data = NULL;
   size_t size;
-  OK(abbe_material_table_load(NULL, &table, &error));
+  MADE(abbe_material_table, table, abbe_material_table_load(NULL, &table, &error));
   OK(abbe_material_table_find(&table, "diamond", &diamond, &error));
   write_to(paths[2], &cut, &p, 0.003, diamond);
   OK(abbe_file_read(paths[2], 1 << 20, &data, &size, &error));
@@ -103,8 +98,5 @@ TEST(gltf_knows_the_stone) {
   const uint32_t *bytes = (const uint32_t *)(const void *)data;
   assert_int_equal(bytes[2], size);
   cJSON_Delete(root);
-  free(data);
   assert_int_equal(unlink(paths[2]), 0);
-  abbe_cut_polyhedron_free(&p);
-  abbe_cut_free(&cut);
 }

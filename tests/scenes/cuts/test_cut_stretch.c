@@ -12,11 +12,11 @@ static abbe_cut_polyhedron stone_of(const abbe_cut *cut) {
 }
 
 static void check(const char *text, double crown, double pavilion) {
-  abbe_cut cut = design_parse(text), before = design_parse(text);
-  abbe_cut_polyhedron p = stone_of(&cut);
+  OWNED(abbe_cut, cut) = design_parse(text), before = design_parse(text);
+  OWNED(abbe_cut_polyhedron, p) = stone_of(&cut);
   abbe_cut_measures m, n;
   OK(abbe_cut_stretch_apply(&cut, &p, crown, pavilion, &error));
-  abbe_cut_polyhedron q = stone_of(&cut);
+  OWNED(abbe_cut_polyhedron, q) = stone_of(&cut);
   assert_int_equal(q.vertex_count, p.vertex_count);
   assert_int_equal(q.edge_count, p.edge_count);
   assert_int_equal(q.face_count, p.face_count);
@@ -37,10 +37,6 @@ static void check(const char *text, double crown, double pavilion) {
     assert_int_equal(signbit(is) != 0, signbit(was) != 0);
     assert_near(cut.tier[t].distance, cut.facet[cut.tier[t].first].d, 0);
   }
-  abbe_cut_polyhedron_free(&q);
-  abbe_cut_polyhedron_free(&p);
-  abbe_cut_free(&cut);
-  abbe_cut_free(&before);
 }
 
 TEST(meets_are_kept) {
@@ -55,28 +51,23 @@ TEST(meets_are_kept) {
 
 /* Above a level girdle a crown that is stretched by k is k times as high. */
 TEST(heights_are_stretched) {
-  abbe_cut cut = design_parse(design_a);
-  abbe_cut_polyhedron p = stone_of(&cut);
+  OWNED(abbe_cut, cut) = design_parse(design_a);
+  OWNED(abbe_cut_polyhedron, p) = stone_of(&cut);
   abbe_cut_measures m, n;
   abbe_cut_measures_make(&cut, &p, &m);
   OK(abbe_cut_stretch_apply(&cut, &p, 0.8, 0.9, &error));
-  abbe_cut_polyhedron q = stone_of(&cut);
+  OWNED(abbe_cut_polyhedron, q) = stone_of(&cut);
   abbe_cut_measures_make(&cut, &q, &n);
   assert_near(n.side[ABBE_CUT_CROWN], 0.8 * m.side[ABBE_CUT_CROWN], 1e-6);
   assert_near(n.side[ABBE_CUT_PAVILION], 0.9 * m.side[ABBE_CUT_PAVILION], 1e-6);
   assert_near(n.side[ABBE_CUT_GIRDLE], m.side[ABBE_CUT_GIRDLE], 1e-6);
-  abbe_cut_polyhedron_free(&q);
-  abbe_cut_polyhedron_free(&p);
-  abbe_cut_free(&cut);
 }
 
 TEST(mains) {
-  abbe_cut cut = design_parse(design_a);
-  abbe_cut_polyhedron p = stone_of(&cut);
+  OWNED(abbe_cut, cut) = design_parse(design_a);
+  OWNED(abbe_cut_polyhedron, p) = stone_of(&cut);
   assert_near(cut.tier[abbe_cut_stretch_main(&cut, &p, ABBE_CUT_PAVILION)].angle_deg, -43, 0);
   assert_near(cut.tier[abbe_cut_stretch_main(&cut, &p, ABBE_CUT_CROWN)].angle_deg, 42, 0);
-  abbe_cut_polyhedron_free(&p);
-  abbe_cut_free(&cut);
 }
 
 static void angles_of(const abbe_cut *cut, const abbe_cut_polyhedron *p, double crown,
@@ -92,25 +83,22 @@ TEST(there_and_back) {
                                   {0, 40, 35, 40},
                                   {50, 45, 50, 45},
                                   {42, 43, 42, 43}};
-  abbe_cut cut = design_parse(design_a), before = design_parse(design_a);
+  OWNED(abbe_cut, cut) = design_parse(design_a), before = design_parse(design_a);
   for (size_t i = 0; i < sizeof way / sizeof *way; i++) {
-    abbe_cut_polyhedron p = stone_of(&cut);
+    OWNED(abbe_cut_polyhedron, p) = stone_of(&cut);
     OK(abbe_cut_stretch_to(&cut, &p, way[i][0], way[i][1], &error));
     angles_of(&cut, &p, way[i][2], way[i][3]);
-    abbe_cut_polyhedron_free(&p);
   }
   for (size_t i = 0; i < cut.facet_count; i++) {
     for (int k = 0; k < 3; k++) assert_near(cut.facet[i].n[k], before.facet[i].n[k], 1e-9);
     assert_near(cut.facet[i].d, before.facet[i].d, 1e-9);
   }
-  abbe_cut_free(&cut);
-  abbe_cut_free(&before);
 }
 
 TEST(angles_that_are_none) {
   static const double wrong[] = {-1, 90, 120, NAN};
-  abbe_cut cut = design_parse(design_a);
-  abbe_cut_polyhedron p = stone_of(&cut);
+  OWNED(abbe_cut, cut) = design_parse(design_a);
+  OWNED(abbe_cut_polyhedron, p) = stone_of(&cut);
   for (size_t i = 0; i < 4; i++) {
     REFUSED(ABBE_OUT_OF_RANGE, "crown's main angle is between 0 and 90",
             abbe_cut_stretch_to(&cut, &p, wrong[i], 0, &error));
@@ -124,8 +112,6 @@ TEST(angles_that_are_none) {
   angles_of(&cut, &p, 0, 60);
   REFUSED(ABBE_NOT_FOUND, "the crown has no slanted facet",
           abbe_cut_stretch_to(&cut, &p, 40, 0, &error));
-  abbe_cut_polyhedron_free(&p);
-  abbe_cut_free(&cut);
 }
 
 /* Quartz: the critical angle is 40.37 degrees; and a ray that comes straight down onto 43 degrees
@@ -143,8 +129,9 @@ TEST(the_window) {
 }
 
 TEST(what_is_refused) {
-  abbe_cut cut = design_parse("g 96 0\na 54.735610 0.5 96 32 64\na -54.735610 0.5 16 48 80\n");
-  abbe_cut_polyhedron p = stone_of(&cut);
+  OWNED(abbe_cut, cut) =
+      design_parse("g 96 0\na 54.735610 0.5 96 32 64\na -54.735610 0.5 16 48 80\n");
+  OWNED(abbe_cut_polyhedron, p) = stone_of(&cut);
   REFUSED(ABBE_UNSUPPORTED, "not at one height",
           abbe_cut_stretch_apply(&cut, &p, 0.9, 0.8, &error));
   assert_near(cut.tier[0].angle_deg, 54.73561, 0);
@@ -161,6 +148,4 @@ TEST(what_is_refused) {
           abbe_cut_stretch_apply(&cut, &p, 1, 0.06, &error));
   assert_near(cut.facet[0].d, was, 0);
   assert_near(cut.tier[2].angle_deg, -60, 0);
-  abbe_cut_polyhedron_free(&p);
-  abbe_cut_free(&cut);
 }

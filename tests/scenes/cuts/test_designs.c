@@ -29,20 +29,18 @@ static const struct {
 enum { COUNT = sizeof designs / sizeof *designs };
 
 static void read(size_t i, abbe_cut *cut, abbe_cut_polyhedron *p) {
-  char path[300];
   abbe_error why = {0};
-  snprintf(path, sizeof path, ABBE_SOURCE_DIR "/scenes/designs/%s.asc", designs[i].name);
-  OK(abbe_cut_file_read(path, cut, NULL, &error));
+  OK(abbe_cut_file_read(printed(ABBE_SOURCE_DIR "/scenes/designs/%s.asc", designs[i].name), cut,
+                        NULL, &error));
   if (abbe_cut_polyhedron_make(cut, 0, p, &why) != ABBE_OK)
     fail_msg("%s: %s", designs[i].name, why.text);
 }
 
 TEST(each_is_closed) {
   for (size_t i = 0; i < COUNT; i++) {
-    OWNED(abbe_cut, cut);
     OWNED(abbe_cut_polyhedron, p);
     abbe_cut_measures m;
-    read(i, &cut, &p);
+    FILLED(abbe_cut, cut, read(i, &cut, &p));
     abbe_cut_measures_make(&cut, &p, &m);
     if (p.vertex_count != designs[i].corners || p.edge_count != designs[i].edges ||
         p.face_count != designs[i].faces || m.faces[ABBE_CUT_GIRDLE] != designs[i].girdle ||
@@ -69,9 +67,8 @@ static bool has_plane(const abbe_cut *cut, const double n[3], double d) {
 
 TEST(each_has_its_symmetry) {
   for (size_t i = 0; i < COUNT; i++) {
-    OWNED(abbe_cut, cut);
     OWNED(abbe_cut_polyhedron, p);
-    read(i, &cut, &p);
+    FILLED(abbe_cut, cut, read(i, &cut, &p));
     const double turn = 2 * 3.14159265358979323846 / cut.folds;
     assert_true(cut.folds >= 1);
     for (size_t f = 0; f < cut.facet_count; f++) {

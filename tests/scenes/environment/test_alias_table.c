@@ -4,9 +4,8 @@
 
 /* The share of each entry, from the table itself. */
 static void check_shares(const double *weight, size_t count) {
-  abbe_alias_table table;
   double share[64] = {0}, sum = 0;
-  OK(abbe_alias_table_make(weight, count, &table, &error));
+  MADE(abbe_alias_table, table, abbe_alias_table_make(weight, count, &table, &error));
   for (size_t i = 0; i < count; i++) {
     sum += weight[i];
     share[i] += table.keep[i];
@@ -17,7 +16,6 @@ static void check_shares(const double *weight, size_t count) {
     assert_near(share[i] / (double)count, weight[i] / sum, 1e-15);
     if (weight[i] == 0) assert_true(share[i] == 0);
   }
-  abbe_alias_table_free(&table);
 }
 
 TEST(shares_are_the_weights) {

@@ -27,9 +27,8 @@ static void make(size_t width, abbe_environment *out) {
 TEST(densities_integrate_to_one) {
   static const size_t widths[] = {4, 6, 16, 36};
   for (size_t w = 0; w < 4; w++) {
-    OWNED(abbe_environment, e);
     double sum = 0, mean = 0;
-    make(widths[w], &e);
+    FILLED(abbe_environment, e, make(widths[w], &e));
     const int rows = 500, columns = 1000;
     for (int i = 0; i < rows; i++)
       for (int j = 0; j < columns; j++) {
@@ -51,9 +50,8 @@ TEST(densities_integrate_to_one) {
 TEST(samples_follow_their_density) {
   static const size_t widths[] = {4, 6, 16, 36};
   for (size_t w = 0; w < 4; w++) {
-    OWNED(abbe_environment, e);
     double is[12] = {0}, expected[12] = {0};
-    make(widths[w], &e);
+    FILLED(abbe_environment, e, make(widths[w], &e));
     enum { SAMPLES = 200000 };
     uint64_t state64 = 1;
     for (int i = 0; i < SAMPLES; i++) {
@@ -93,8 +91,7 @@ TEST(samples_follow_their_density) {
 /* The ends of [0, 1): nothing is outside, and no sample is where it is dark. */
 TEST(extreme_numbers) {
   static const double ends[] = {0, 0x1p-60, 0.5, 1 - 0x1p-53};
-  OWNED(abbe_environment, e);
-  make(16, &e);
+  FILLED(abbe_environment, e, make(16, &e));
   for (int i = 0; i < 64; i++)
     for (int j = 0; j < 128; j++) {
       const double u[3] = {(j + 0.5) / 128, ends[i % 4], ends[i / 4 % 4]};
@@ -106,10 +103,8 @@ TEST(extreme_numbers) {
 }
 
 TEST(turning_both_changes_nothing) {
-  OWNED(abbe_environment, still) = {0};
-  OWNED(abbe_environment, turned) = {0};
-  make(64, &still);
-  make(64, &turned);
+  FILLED(abbe_environment, still, make(64, &still));
+  FILLED(abbe_environment, turned, make(64, &turned));
   abbe_environment_turn(0, NULL, 0, still.to_map);
   /* a quarter about z takes +x to +y; then a quarter about x takes +y to +z */
   abbe_environment_turn(ABBE_PI / 2, (const double[3]){1, 0, 0}, ABBE_PI / 2, turned.to_map);
@@ -129,12 +124,10 @@ TEST(turning_both_changes_nothing) {
 }
 
 TEST(light_is_linear) {
-  OWNED(abbe_environment, one);
-  OWNED(abbe_environment, three);
   const double n[3] = {0.6, 0, 0.8};
   double a[3], b[3];
-  make(64, &one);
-  make(64, &three);
+  FILLED(abbe_environment, one, make(64, &one));
+  FILLED(abbe_environment, three, make(64, &three));
   for (size_t i = 0; i < 3 * 64 * 32; i++) three.map.rgb[i] *= 3;
   abbe_alias_table_free(&three.texels);
   for (size_t i = 0; i < three.level_count; i++) abbe_radiance_map_free(&three.level[i]);
@@ -147,8 +140,7 @@ TEST(light_is_linear) {
 }
 
 TEST(levels_are_blurred) {
-  OWNED(abbe_environment, e);
-  make(64, &e);
+  FILLED(abbe_environment, e, make(64, &e));
   assert_int_equal(e.level_count, 4);
   assert_int_equal(e.level[3].height, 2);
   for (size_t l = 0; l < 8; l++) {
@@ -160,9 +152,8 @@ TEST(levels_are_blurred) {
 }
 
 TEST(the_brightest_part) {
-  OWNED(abbe_environment, e) = {0};
   double share;
-  OK(abbe_radiance_map_make(256, &e.map, &error));
+  MADE(abbe_environment, e, abbe_radiance_map_make(256, &e.map, &error));
   for (size_t i = 0; i < 3 * 256 * 128; i++) e.map.rgb[i] = i / 3 % 256 < 64 ? 3 : 1;
   abbe_environment_turn(0, NULL, 0, e.to_map);
   OK(abbe_environment_prepare(&e, &error));
@@ -180,8 +171,7 @@ TEST(what_is_refused) {
   } cases[] = {
       {-1e-3f, "is -0.001"}, {NAN, "nan"}, {INFINITY, "inf"}, {2e12f, "2e+12"}, {0, "black"}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    OWNED(abbe_environment, e) = {0};
-    OK(abbe_radiance_map_make(16, &e.map, &error));
+    MADE(abbe_environment, e, abbe_radiance_map_make(16, &e.map, &error));
     e.map.rgb[3 * (16 * 2 + 5) + 1] = cases[i].value;
     REFUSED(ABBE_INVALID_ARGUMENT, cases[i].part, abbe_environment_prepare(&e, &error));
     if (i < 4) assert_contains(last_error.text, "green of the texel at column 5, row 2");

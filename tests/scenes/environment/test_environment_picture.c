@@ -20,10 +20,10 @@ static abbe_image picture(size_t width, size_t height, const char *const *names)
 }
 
 static abbe_result read_back(abbe_image *image, abbe_environment_layout layout,
-                             abbe_radiance_map *map, abbe_error *error) {
-  assert_int_equal(abbe_exr_write(path, image, NULL), ABBE_OK);
+                             abbe_radiance_map *map, abbe_error *why) {
+  OK(abbe_exr_write(path, image, &error));
   abbe_image_free(image);
-  return abbe_environment_picture_read(path, layout, map, error);
+  return abbe_environment_picture_read(path, layout, map, why);
 }
 
 static void begin(void) {
@@ -37,13 +37,12 @@ static void finish(void) {
 GROUP(begin, finish);
 
 TEST(latlong_pictures) {
-  abbe_image image = picture(16, 8, rgb_names), kept = picture(16, 8, rgb_names);
-  OWNED(abbe_radiance_map, map);
-  OK(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, &error));
+  abbe_image image = picture(16, 8, rgb_names);
+  OWNED(abbe_image, kept) = picture(16, 8, rgb_names);
+  MADE(abbe_radiance_map, map, read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, &error));
   assert_true(map.width == 16 && map.height == 8);
   assert_memory_equal(map.rgb, kept.data, 3 * 16 * 8 * sizeof(float));
   abbe_radiance_map_free(&map);
-  abbe_image_free(&kept);
   /* of Radiance: one pixel of 1, 0, 0, the rest black */
   char data[256] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 4\n";
   const size_t head = strlen(data);
@@ -57,9 +56,8 @@ TEST(latlong_pictures) {
 TEST(colours_are_converted) {
   for (int space = 0; space < ABBE_RGB_SPACE_COUNT; space++) {
     abbe_image image = picture(16, 8, space == ABBE_RGB_SPACE_XYZ ? xyz_names : rgb_names);
-    abbe_image kept = picture(16, 8, rgb_names);
+    OWNED(abbe_image, kept) = picture(16, 8, rgb_names);
     double to_xyz[9], from_xyz[9];
-    OWNED(abbe_radiance_map, map);
     abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
     abbe_rgb_space_from_xyz((abbe_rgb_space)space, from_xyz);
     if (space != ABBE_RGB_SPACE_XYZ) abbe_rgb_space_chromaticities((abbe_rgb_space)space, image.xy);
@@ -69,19 +67,17 @@ TEST(colours_are_converted) {
       abbe_rgb_space_apply(from_xyz, v, v);
       for (size_t k = 0; k < 3; k++) image.data[3 * i + k] = (float)v[k];
     }
-    OK(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, &error));
+    MADE(abbe_radiance_map, map, read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, &error));
     for (size_t i = 0; i < 3 * 16 * 8; i++) assert_near(map.rgb[i], kept.data[i], 1e-5);
-    abbe_image_free(&kept);
   }
 }
 
 /* A green of ACEScg is no colour of Rec.709. */
 TEST(what_rec709_cannot_hold_is_clipped) {
   abbe_image image = picture(4, 2, rgb_names);
-  OWNED(abbe_radiance_map, map);
   abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_ACESCG, image.xy);
   for (size_t i = 0; i < 24; i++) image.data[i] = i % 3 == 1;
-  OK(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, &error));
+  MADE(abbe_radiance_map, map, read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, &error));
   assert_true(map.rgb[0] == 0 && map.rgb[1] > 1 && map.rgb[2] == 0);
 }
 
@@ -109,10 +105,9 @@ TEST(the_space_that_a_file_says) {
 TEST(grey_pictures) {
   static const char *const names[] = {"Y"};
   abbe_image image;
-  OWNED(abbe_radiance_map, map);
   OK(abbe_image_make(4, 2, 1, names, &image, &error));
   for (size_t i = 0; i < 8; i++) image.data[i] = (float)i;
-  OK(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, &error));
+  MADE(abbe_radiance_map, map, read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, &error));
   for (size_t i = 0; i < 24; i++) assert_true(map.rgb[i] == (float)(i / 3));
 }
 
@@ -144,9 +139,8 @@ TEST(cubes) {
         pixel[2] = turned ? i % SIDE >= SIDE / 2 : i % SIDE < SIDE / 2;
       }
     }
-    OWNED(abbe_radiance_map, map) = {0};
     double rgb[3];
-    OK(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, &error));
+    MADE(abbe_radiance_map, map, read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, &error));
     assert_true(map.width == 4 * SIDE);
     for (int f = 0; f < 6; f++) {
       const double *d = faces[f].direction;
@@ -176,7 +170,7 @@ static void check_refused(abbe_environment_layout layout, abbe_result code, cons
 TEST(what_is_refused) {
   static const float bad[] = {-0.25f, NAN, INFINITY};
   static const char *const parts[] = {"is -0.25 in the channel G", "nan", "inf"};
-  abbe_image image;
+  OWNED(abbe_image, image) = {0};
   for (int i = 0; i < 3; i++) {
     image = picture(8, 4, rgb_names);
     image.data[3 * (8 + 2) + 1] = bad[i];
@@ -202,7 +196,6 @@ TEST(what_is_refused) {
   check_refused(ABBE_LAYOUT_BY_ASPECT, ABBE_NOT_FOUND, "no channels");
   OK(abbe_image_make(8194, 4097, 1, (const char *const[1]){"Y"}, &image, &error));
   OK(abbe_exr_write(path, &image, &error));
-  abbe_image_free(&image);
   check_refused(ABBE_LAYOUT_BY_ASPECT, ABBE_UNSUPPORTED, "8192");
   OK(abbe_file_write(path, "\x76\x2f\x31\x01 cut", 8, &error));
   check_refused(ABBE_LAYOUT_BY_ASPECT, ABBE_PARSE, path);

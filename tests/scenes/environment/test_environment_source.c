@@ -46,11 +46,10 @@ TEST(energies_are_exact) {
         s.half_height_rad = (kind == 3 ? 10 : 25) * DEGREE;
         place(&s, places[i][0], places[i][1]);
         if ((w == 1) != (i % 3 == 0)) continue;
-        abbe_radiance_map map = map_of(widths[w], &s);
+        OWNED(abbe_radiance_map, map) = map_of(widths[w], &s);
         const double solid = abbe_environment_source_solid_angle(&s);
         assert_near(integral(&map, 0) / (2 * solid), 1, 1e-6);
         assert_near(integral(&map, 2) / (0.5 * solid), 1, 1e-6);
-        abbe_radiance_map_free(&map);
       }
 }
 
@@ -72,7 +71,7 @@ TEST(known_irradiances) {
   abbe_environment_source s = {
       .kind = ABBE_SOURCE_DISK, .radiance = {1, 1, 1}, .radius_rad = 30 * DEGREE};
   place(&s, 90, 0);
-  abbe_radiance_map map = map_of(1024, &s);
+  OWNED(abbe_radiance_map, map) = map_of(1024, &s);
   abbe_radiance_map_irradiance(&map, up_z, rgb);
   assert_near(rgb[0] / (ABBE_PI * 0.25), 1, 1e-4);
   abbe_radiance_map_free(&map);
@@ -101,7 +100,6 @@ TEST(known_irradiances) {
   assert_near(rgb[0], 0, 1e-12);
   abbe_radiance_map_at(&map, (const double[3]){tan(21 * DEGREE), 1, tan(4 * DEGREE)}, rgb);
   assert_near(rgb[0], 0, 1e-12);
-  abbe_radiance_map_free(&map);
 }
 
 TEST(skies) {
@@ -109,12 +107,11 @@ TEST(skies) {
   for (int type = 1; type <= ABBE_SKY_TYPES; type += SANITIZED ? 7 : 1) {
     const abbe_environment_source s = {
         .kind = ABBE_SOURCE_SKY, .radiance = {2, 2, 2}, .sky = {type, {sin(1), 0, cos(1)}}};
-    abbe_radiance_map map = map_of(1024, &s);
+    OWNED(abbe_radiance_map, map) = map_of(1024, &s);
     abbe_radiance_map_irradiance(&map, up_z, rgb);
     assert_near(rgb[0] / (2 * abbe_sky_horizontal(&s.sky)), 1, 1e-4);
     abbe_radiance_map_irradiance(&map, (const double[3]){0, 0, -1}, rgb);
     assert_near(rgb[0], 0, 1e-3);
-    abbe_radiance_map_free(&map);
   }
 }
 
@@ -126,7 +123,7 @@ TEST(domes) {
   double rgb[3];
   abbe_environment_source s = {
       .kind = ABBE_SOURCE_DOME, .radiance = {2, 2, 2}, .knot_count = 2, .knot = iso};
-  abbe_radiance_map map = map_of(1024, &s);
+  OWNED(abbe_radiance_map, map) = map_of(1024, &s);
   abbe_radiance_map_irradiance(&map, up_z, rgb);
   assert_near(rgb[0] / (2 * ABBE_PI), 1, 1e-4);
   assert_near(integral(&map, 0) / (4 * ABBE_PI), 1, 1e-4);
@@ -137,19 +134,17 @@ TEST(domes) {
   const double solid[] = {sin(75 * DEGREE) - sin(45 * DEGREE), sin(45 * DEGREE),
                           1 - sin(75 * DEGREE)};
   for (int k = 0; k < 3; k++) assert_near(integral(&map, k) / (4 * ABBE_PI * solid[k]), 1, 1e-4);
-  abbe_radiance_map_free(&map);
 }
 
 TEST(sources_add_up) {
   abbe_environment_source s = {.kind = ABBE_SOURCE_UNIFORM, .radiance = {1, 2, 3}};
-  abbe_radiance_map map = map_of(64, &s);
+  OWNED(abbe_radiance_map, map) = map_of(64, &s);
   s = (abbe_environment_source){.kind = ABBE_SOURCE_DISK, .radiance = {1, 1, 1}, .radius_rad = 0.3};
   place(&s, 20, 20);
   OK(abbe_environment_source_add(&s, &map, &error));
   OK(abbe_environment_source_add(&s, &map, &error));
   const double solid = abbe_environment_source_solid_angle(&s);
   assert_near(integral(&map, 1), 8 * ABBE_PI + 2 * solid, 1e-5);
-  abbe_radiance_map_free(&map);
 }
 
 TEST(what_is_refused) {
@@ -160,8 +155,7 @@ TEST(what_is_refused) {
       {.kind = ABBE_SOURCE_RECTANGLE, .half_width_rad = 1, .half_height_rad = 1.6},
       {.kind = ABBE_SOURCE_SKY, .sky = {17, {0, 0, 1}}},
   };
-  OWNED(abbe_radiance_map, map);
-  OK(abbe_radiance_map_make(16, &map, &error));
+  MADE(abbe_radiance_map, map, abbe_radiance_map_make(16, &map, &error));
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
     REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_environment_source_add(&bad[i], &map, &error));
 }

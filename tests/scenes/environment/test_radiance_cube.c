@@ -33,22 +33,18 @@ TEST(directions_are_opengls) {
 
 static void make_map(abbe_radiance_map *map) {
   const abbe_environment_source dusk = {.kind = ABBE_SOURCE_UNIFORM, .radiance = {0.2, 0.3, 0.5}};
-  abbe_environment_source spot = {.kind = ABBE_SOURCE_SPOT,
-                                  .radiance = {40, 30, 20},
-                                  .centre = {0.6, 0, 0.8},
-                                  .radius_rad = 0.05};
+  abbe_environment_source spot = FIELDS(.kind = ABBE_SOURCE_SPOT, .radiance = {40, 30, 20},
+                                        .centre = {0.6, 0, 0.8}, .radius_rad = 0.05);
   OK(abbe_radiance_map_make(512, map, &error));
   OK(abbe_environment_source_add(&dusk, map, &error));
   OK(abbe_environment_source_add(&spot, map, &error));
 }
 
 TEST(every_level_holds_the_light) {
-  OWNED(abbe_radiance_map, map);
-  abbe_radiance_cube cube;
   double mean[3], first[3] = {0, 0, 0};
-  make_map(&map);
+  FILLED(abbe_radiance_map, map, make_map(&map));
   abbe_radiance_map_mean(&map, mean);
-  OK(abbe_radiance_cube_make(&map, 128, &cube, &error));
+  MADE(abbe_radiance_cube, cube, abbe_radiance_cube_make(&map, 128, &cube, &error));
   assert_int_equal(cube.level_count, 8);
   for (size_t k = 0; k < cube.level_count; k++) {
     const size_t side = cube.side >> k;
@@ -63,7 +59,6 @@ TEST(every_level_holds_the_light) {
       assert_near(sum[c], first[c], 1e-5 * mean[c]);
     }
   }
-  abbe_radiance_cube_free(&cube);
 }
 
 /* The texel beyond an edge is that of the neighbour which shares the edge: directions of both are
@@ -105,10 +100,8 @@ TEST(borders_are_the_neighbours) {
 
 /* Where the map is smooth a texel is what the map shows in its direction. */
 TEST(texels_show_the_map) {
-  OWNED(abbe_radiance_map, map);
-  abbe_radiance_cube cube;
-  make_map(&map);
-  OK(abbe_radiance_cube_make(&map, 256, &cube, &error));
+  FILLED(abbe_radiance_map, map, make_map(&map));
+  MADE(abbe_radiance_cube, cube, abbe_radiance_cube_make(&map, 256, &cube, &error));
   for (size_t i = 0; i < 6 * 256 * 256; i += 97) {
     double d[3], rgb[3];
     abbe_radiance_cube_direction(i / 65536, ((double)(i % 256) + 0.5) / 256,
@@ -117,7 +110,6 @@ TEST(texels_show_the_map) {
     for (size_t c = 0; c < 3; c++) assert_near((double)cube.level[0][3 * i + c], rgb[c], 0.6);
     if (d[0] < 0) assert_near((double)cube.level[0][3 * i + 1], 0.3, 1e-6);
   }
-  abbe_radiance_cube_free(&cube);
 }
 
 TEST(wrong_sides) {

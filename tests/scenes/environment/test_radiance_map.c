@@ -20,7 +20,7 @@ static const double normals[][3] = {
     {0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-0.6, 0.64, 0.48}, {0.1, -0.7, -0.70710678118654746}};
 
 TEST(where_directions_are) {
-  abbe_radiance_map map = make(64);
+  OWNED(abbe_radiance_map, map) = make(64);
   static const struct {
     double direction[3], x, y;
   } cases[] = {{{1, 0, 0}, 32, 16},  {{0, 1, 0}, 16, 16}, {{0, -3, 0}, 48, 16}, {{0, 0, 1}, 32, 0},
@@ -33,7 +33,6 @@ TEST(where_directions_are) {
     abbe_radiance_map_direction(&map, x, y, back);
     for (int k = 0; k < 3; k++) assert_near(back[k], cases[i].direction[k] / length, 1e-12);
   }
-  abbe_radiance_map_free(&map);
 }
 
 TEST(solid_angles_add_up) {
@@ -50,7 +49,7 @@ TEST(solid_angles_add_up) {
 }
 
 TEST(values_stand_at_middles_and_are_continuous) {
-  abbe_radiance_map map = pattern(16);
+  OWNED(abbe_radiance_map, map) = pattern(16);
   for (size_t y = 0; y < 8; y++)
     for (size_t x = 0; x < 16; x++) {
       double direction[3], rgb[3];
@@ -71,12 +70,11 @@ TEST(values_stand_at_middles_and_are_continuous) {
       for (int k = 0; k < 3; k++) assert_near(one[k], other[k], 1e-6);
     }
   }
-  abbe_radiance_map_free(&map);
 }
 
 /* By a midpoint rule of its own. */
 TEST(the_mean_is_the_integral) {
-  abbe_radiance_map map = pattern(16);
+  OWNED(abbe_radiance_map, map) = pattern(16);
   double mean[3], sum[3] = {0};
   const int rows = 800, columns = 1600;
   for (int i = 0; i < rows; i++)
@@ -89,13 +87,12 @@ TEST(the_mean_is_the_integral) {
     }
   abbe_radiance_map_mean(&map, mean);
   for (int k = 0; k < 3; k++) assert_near(mean[k], sum[k], 2e-5);
-  abbe_radiance_map_free(&map);
 }
 
 TEST(uniform_light) {
   static const size_t widths[] = {4, 8, 100, 512, 1024, 2048};
   for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
-    abbe_radiance_map map = make(widths[w]);
+    OWNED(abbe_radiance_map, map) = make(widths[w]);
     double rgb[3];
     for (size_t i = 0; i < map.width * map.height; i++) {
       map.rgb[3 * i] = 1;
@@ -110,13 +107,12 @@ TEST(uniform_light) {
       assert_near(rgb[1] / ABBE_PI, 2, 2e-4);
       assert_near(rgb[2] / ABBE_PI, 0.5, 5e-5);
     }
-    abbe_radiance_map_free(&map);
   }
 }
 
 /* Radiance 1 + n.d: irradiance pi + 2 pi / 3. */
 TEST(light_from_one_side) {
-  abbe_radiance_map map = make(512);
+  OWNED(abbe_radiance_map, map) = make(512);
   for (size_t n = 0; n < sizeof normals / sizeof *normals; n++) {
     double rgb[3];
     for (size_t i = 0; i < map.width * map.height; i++) {
@@ -127,7 +123,6 @@ TEST(light_from_one_side) {
     abbe_radiance_map_irradiance(&map, normals[n], rgb);
     assert_near(rgb[0], ABBE_PI * (1 + 2.0 / 3), 3e-4);
   }
-  abbe_radiance_map_free(&map);
 }
 
 static double sum_over_cells(const abbe_radiance_map *map) {
@@ -143,7 +138,7 @@ static double sum_over_cells(const abbe_radiance_map *map) {
 TEST(halves_keep_the_light) {
   static const size_t widths[] = {8, 10, 64, 100, 250, 374};
   for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
-    abbe_radiance_map map = pattern(widths[w]);
+    OWNED(abbe_radiance_map, map) = pattern(widths[w]);
     while (map.height >= 4) {
       abbe_radiance_map half;
       OK(abbe_radiance_map_halve(&map, &half, &error));
@@ -152,17 +147,16 @@ TEST(halves_keep_the_light) {
       abbe_radiance_map_free(&map);
       map = half;
     }
-    abbe_radiance_map_free(&map);
   }
 }
 
 TEST(what_is_refused) {
   static const size_t widths[] = {0, 2, 5, 8194, (size_t)-2};
-  abbe_radiance_map map, half;
+  OWNED(abbe_radiance_map, map) = {0};
+  abbe_radiance_map half;
   for (size_t w = 0; w < sizeof widths / sizeof *widths; w++)
     REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_radiance_map_make(widths[w], &map, &error));
   map = make(6);
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_radiance_map_halve(&map, &half, &error));
-  abbe_radiance_map_free(&map);
   abbe_radiance_map_free(NULL);
 }

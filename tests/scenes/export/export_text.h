@@ -20,10 +20,8 @@ static inline int clear_folder(void) {
   int count = 0;
   DIR *dir = opendir(folder);
   for (struct dirent *e; (e = readdir(dir)) != NULL;) {
-    char path[400];
     if (e->d_name[0] == '.') continue;
-    snprintf(path, sizeof path, "%s/%s", folder, e->d_name);
-    unlink(path);
+    unlink(printed("%s/%s", folder, e->d_name));
     count++;
   }
   closedir(dir);
@@ -40,9 +38,9 @@ static abbe_scene_export_report report;
 /* The text of what is written; the caller frees it, and the report. */
 __attribute__((noinline)) static char *written(const abbe_scene *scene,
                                                abbe_scene_export_target target) {
-  char path[200], *text = NULL;
+  char *text = NULL;
   size_t size = 0;
-  snprintf(path, sizeof path, "%s/it%s", folder, abbe_scene_export_ending(target));
+  const char *path = printed("%s/it%s", folder, abbe_scene_export_ending(target));
   OK(abbe_scene_export_write(path, scene, target, NULL, &report, &error));
   OK(abbe_file_read(path, 1 << 28, &text, &size, &error));
   if (target == ABBE_SCENE_EXPORT_GLTF) {

@@ -16,8 +16,7 @@ static abbe_export_index index_of(const abbe_material_table *table, const char *
 
 /* crown: n = 1.5 + 0.006 um2 / lambda^2. */
 TEST(a_law_of_two_terms) {
-  OWNED(abbe_scene, scene);
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
   abbe_export_index i = index_of(&scene.table, "crown", ABBE_EXPORT_FORM_CAUCHY, 0);
   assert_near(i.value[0], 1.5, 1e-12);
   assert_near(i.value[1], 0.006, 1e-12);
@@ -38,8 +37,7 @@ TEST(a_law_of_two_terms) {
 }
 
 TEST(one_and_three_indices) {
-  OWNED(abbe_scene, scene);
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
   abbe_export_index i = index_of(&scene.table, "crown", ABBE_EXPORT_FORM_ONE, 500);
   assert_near(i.value[0], 1.524, 1e-12);
   assert_near(i.worst, 0.006 / (0.38 * 0.38) - 0.024, 1e-12);
@@ -57,8 +55,7 @@ TEST(one_and_three_indices) {
 
 /* narrow is known from 400 to 700 nm; loose too, but goes on. */
 TEST(records_that_end) {
-  OWNED(abbe_scene, scene);
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
   abbe_export_index i = index_of(&scene.table, "narrow", ABBE_EXPORT_FORM_TABLE, 0);
   assert_true(i.held);
   assert_near(i.table[0], 1.5 + 0.006 / 0.16, 1e-12);
@@ -70,8 +67,7 @@ TEST(records_that_end) {
 }
 
 TEST(stated_errors_are_those_measured) {
-  OWNED(abbe_material_table, table) = {0};
-  OK(abbe_material_table_load("default", &table, &error));
+  MADE(abbe_material_table, table, abbe_material_table_load("default", &table, &error));
   for (size_t m = 0; m < table.count; m++) {
     const abbe_material *material = &table.material[m];
     abbe_export_index index;

@@ -132,10 +132,9 @@ TEST(cameras_show_the_same_pixels) {
   static void (*const pixel[])(const char *, double, double, const double *, double *) = {
       pbrt_pixel, mitsuba_pixel, luxcore_pixel, gltf_pixel, blender_pixel};
   static const size_t sizes[][2] = {{300, 200}, {200, 300}, {256, 256}};
-  OWNED(abbe_scene, scene);
-  load_text("materials: glass.yaml\ncamera: {eye: [0.3, -1, 0.5], target: [0.02, 0, 0.05], "
-            "up: [0.2, 0, 1], fov: 40}\n" POINT_LIGHT FLOOR BALL("crown"),
-            &scene);
+  OWNED(abbe_scene, scene) =
+      scene_of("materials: glass.yaml\ncamera: {eye: [0.3, -1, 0.5], target: [0.02, 0, 0.05], up: "
+               "[0.2, 0, 1], fov: 40}\n" POINT_LIGHT FLOOR BALL("crown"));
   for (int target = 0; target < ABBE_SCENE_EXPORT_COUNT; target++)
     for (int s = 0; s < 3; s++) {
       scene.camera.width = sizes[s][0];
@@ -169,20 +168,17 @@ TEST(surroundings_stand_where_they_were) {
   static const abbe_scene_export_target all[] = {ABBE_SCENE_EXPORT_PBRT, ABBE_SCENE_EXPORT_MITSUBA,
                                                  ABBE_SCENE_EXPORT_LUXCORE,
                                                  ABBE_SCENE_EXPORT_BLENDER};
-  OWNED(abbe_scene, scene);
-  load_text(CAMERA FLOOR BALL("flat") "environment: {size: 64, uniform: 0.1, softboxes: [{azimuth: "
-                                      "30, elevation: 40, width: 20, height: 20, radiance: 9}]}\n",
-            &scene);
+  OWNED(abbe_scene, scene) = scene_of(
+      CAMERA FLOOR BALL("flat") "environment: {size: 64, uniform: 0.1, softboxes: [{azimuth: 30, "
+                                "elevation: 40, width: 20, height: 20, radiance: 9}]}\n");
   const double pi = 3.14159265358979323846;
   const double to[3] = {cos(40 * pi / 180) * cos(30 * pi / 180),
                         cos(40 * pi / 180) * sin(30 * pi / 180), sin(40 * pi / 180)};
   for (size_t t = 0; t < 4; t++) {
-    char path[200];
-    OWNED(abbe_image, image);
     double mean = 0, weights = 0, middle[3] = {0};
     done(written(&scene, all[t]));
-    snprintf(path, sizeof path, "%s/it-environment.exr", folder);
-    OK(abbe_exr_read(path, &image, &error));
+    MADE(abbe_image, image,
+         abbe_exr_read(printed("%s/it-environment.exr", folder), &image, &error));
     for (size_t i = 0; i < image.width * image.height; i++) {
       const double u = ((double)(i % image.width) + 0.5) / (double)image.width;
       const double v = ((double)(i / image.width) + 0.5) / (double)image.height;

@@ -10,8 +10,8 @@
 static const char *lawful(void) {
   static char text[8192];
   size_t used = (size_t)snprintf(text, sizeof text,
-                                 "materials:\n- name: lawful\n  model: tabulated\n  "
-                                 "interpolation: spline\n  source: made up\n  points: [");
+                                 "materials:\n- name: lawful\n  model: tabulated\n  interpolation: "
+                                 "spline\n  source: made up\n  points: [");
   for (int nm = 380; nm <= 730; nm += 5)
     used += (size_t)snprintf(text + used, sizeof text - used, "%s[%d, %.12f]", nm > 380 ? ", " : "",
                              nm, 1.7 * pow(1.05, (555 - nm) / 350.0));
@@ -35,8 +35,7 @@ TEST(an_index_of_its_law_is_found_again) {
   close(file);
   const char *text = lawful();
   OK(abbe_file_write(path, text, strlen(text), &error));
-  OWNED(abbe_material_table, table);
-  OK(abbe_material_table_load(path, &table, &error));
+  MADE(abbe_material_table, table, abbe_material_table_load(path, &table, &error));
   unlink(path);
   const abbe_pov_glass glass = glass_of(&table, "lawful");
   assert_near(glass.index.ior, 1.7, 1e-8);
@@ -50,8 +49,7 @@ TEST(an_index_of_its_law_is_found_again) {
 
 /* The fit leaves what it says, and less than both ends' own numbers would in the middle. */
 TEST(real_glasses_are_met_as_said) {
-  OWNED(abbe_material_table, table) = {0};
-  OK(abbe_material_table_load("default", &table, &error));
+  MADE(abbe_material_table, table, abbe_material_table_load("default", &table, &error));
   for (size_t i = 0; i < table.count; i++) {
     const abbe_material *m = &table.material[i];
     if (abbe_material_is_conductor(m)) continue;
@@ -125,8 +123,7 @@ static double number_after(const char *text, const char *words) {
 }
 
 TEST(a_point_light_keeps_its_brightness) {
-  OWNED(abbe_scene, scene);
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
   FREED char *text = written(&scene, NULL);
   assert_well_formed(text);
   const double scale = abbe_pov_file_scale(&scene);
@@ -149,16 +146,13 @@ TEST(a_point_light_keeps_its_brightness) {
 }
 
 TEST(every_kind_of_light_is_written) {
-  OWNED(abbe_scene, scene);
-  load_text(
-      CAMERA
-      "lights:\n"
-      "- {name: sun, kind: directional, direction: [0, 0, -1], irradiance: 3}\n"
-      "- {name: beam, kind: spot, position: [0, 0, 1], target: [0, 0, 0], intensity: 1, "
-      "cone: 30, soft: 10, illuminant: A}\n"
-      "- {name: panel, kind: disk, position: [0.3, 0, 1], direction: [0, 0, -1], radius: 0.05, "
-      "radiance: 100}\n" FLOOR BALL("smoke") BRICK("flat") RING("crown") HILL,
-      &scene);
+  OWNED(abbe_scene, scene) = scene_of(
+      CAMERA "lights:\n"
+             "- {name: sun, kind: directional, direction: [0, 0, -1], irradiance: 3}\n"
+             "- {name: beam, kind: spot, position: [0, 0, 1], target: [0, 0, 0], intensity: 1, "
+             "cone: 30, soft: 10, illuminant: A}\n"
+             "- {name: panel, kind: disk, position: [0.3, 0, 1], direction: [0, 0, -1], radius: "
+             "0.05, radiance: 100}\n" FLOOR BALL("smoke") BRICK("flat") RING("crown") HILL);
   const abbe_pov_options options = {.photons = 7, .samples = 3};
   FREED char *text = written(&scene, &options);
   assert_well_formed(text);
@@ -188,14 +182,12 @@ TEST(every_kind_of_light_is_written) {
 
 /* Names are comments that cannot end early; a path that cannot be spelt is refused. */
 TEST(names_do_no_harm) {
-  OWNED(abbe_scene, scene);
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("flat"));
   free(scene.object[1].name);
   scene.object[1].name = strdup("x\n} light_source { <0,0,0> \r color 1 }");
-  char *text = written(&scene, NULL);
+  FREED char *text = written(&scene, NULL);
   assert_well_formed(text);
   assert_non_null(strstr(text, "// refractor 'x?} light_source { <0,0,0> ? color 1 }'\n"));
-  free(text);
   scene.object[0].texture_path = strdup("wood\".png");
   REFUSED(ABBE_UNSUPPORTED, "plainer name",
           abbe_pov_file_write("/tmp/abbe-test-never.pov", &scene, NULL, &error));
@@ -203,15 +195,14 @@ TEST(names_do_no_harm) {
 }
 
 TEST(what_cannot_be_is_refused) {
-  OWNED(abbe_scene, scene);
   abbe_pov_options options = {.samples = 1};
-  load_text(CAMERA POINT_LIGHT FLOOR "- {name: ball, shape: sphere, radius: 0.1, transform: "
-                                     "[{translate: [0, 0, 0.2]}], mirror: 0.9}\n",
-            &scene);
+  OWNED(abbe_scene, scene) =
+      scene_of(CAMERA POINT_LIGHT FLOOR "- {name: ball, shape: sphere, radius: 0.1, transform: "
+                                        "[{translate: [0, 0, 0.2]}], mirror: 0.9}\n");
   REFUSED(ABBE_UNSUPPORTED, "'ball' (line 7) is a mirror",
           abbe_pov_file_write("/tmp/abbe-test-never.pov", &scene, NULL, &error));
   abbe_scene_free(&scene);
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &scene);
+  scene = scene_of(CAMERA POINT_LIGHT FLOOR BALL("narrow"));
   static const char never[] = "/tmp/abbe-test-never.pov";
   REFUSED(ABBE_INVALID_ARGUMENT, "2 to 100", abbe_pov_file_write(never, &scene, &options, &error));
   options.samples = 101;
@@ -223,7 +214,7 @@ TEST(what_cannot_be_is_refused) {
   REFUSED(ABBE_OUT_OF_RANGE, "narrow", abbe_pov_file_write(never, &scene, NULL, &error));
   REFUSED(ABBE_IO, "", abbe_pov_file_write("/no/such/folder/x.pov", &scene, NULL, &error));
   abbe_scene_free(&scene);
-  load_text(CAMERA FLOOR BALL("flat") "environment: {size: 64, uniform: 1}\n", &scene);
+  scene = scene_of(CAMERA FLOOR BALL("flat") "environment: {size: 64, uniform: 1}\n");
   REFUSED(ABBE_UNSUPPORTED, "'environment'", abbe_pov_file_write(never, &scene, NULL, &error));
   assert_int_not_equal(access(never, F_OK), 0);
 }
@@ -231,8 +222,7 @@ TEST(what_cannot_be_is_refused) {
 TEST(shipped_scenes_are_written) {
   static const char *const names[] = {"sphere", "prism", "gem", "glass", "rainbow"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-    OWNED(abbe_scene, scene);
-    load_shipped(names[i], &scene);
+    OWNED(abbe_scene, scene) = shipped_scene(names[i]);
     FREED char *text = written(&scene, NULL);
     assert_well_formed(text);
   }

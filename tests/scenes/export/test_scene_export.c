@@ -24,8 +24,7 @@ TEST(the_index_in_the_file_has_the_stated_error) {
   static const char *const words[] = {"\"spectrum eta\" [", "name=\"n_m0_sf10\"",
                                       "interiorior =", "\"ior\":", "= glass('m0_sf10', "};
   static const size_t counts[] = {190, 1, 1, 1, 3};
-  OWNED(abbe_scene, scene);
-  load_shipped("prism", &scene);
+  OWNED(abbe_scene, scene) = shipped_scene("prism");
   for (int target = 0; target < ABBE_SCENE_EXPORT_COUNT; target++) {
     char *text = written(&scene, (abbe_scene_export_target)target);
     double v[190], b = 0, worst = 0, sum = 0;
@@ -68,9 +67,8 @@ TEST(the_index_in_the_file_has_the_stated_error) {
 
 TEST(lights_keep_their_power) {
   const double sphere = 4 * 3.14159265358979323846;
-  OWNED(abbe_scene, scene);
   double v[16];
-  load_text(CAMERA LIGHTS FLOOR BALL("murk") BRICK("flat"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA LIGHTS FLOOR BALL("murk") BRICK("flat"));
   char *text = written(&scene, ABBE_SCENE_EXPORT_PBRT);
   const char *at = strstr(text, "\"point\"");
   numbers_after(at, "\"float scale\"", v, 1);
@@ -104,8 +102,7 @@ TEST(lights_keep_their_power) {
 
 /* The format's validator refuses components of colours beyond 1: the largest is 1. */
 TEST(colours_in_gltf) {
-  OWNED(abbe_scene, scene);
-  load_text(CAMERA LIGHTS FLOOR BALL("murk") BRICK("flat"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA LIGHTS FLOOR BALL("murk") BRICK("flat"));
   char *text = written(&scene, ABBE_SCENE_EXPORT_GLTF);
   const char *const keys[] = {"color", "emissiveFactor"};
   int count[2] = {0};
@@ -126,11 +123,10 @@ TEST(colours_in_gltf) {
  * integral of V is 106.86 nm). In Mitsuba its film's Y, the integral of ybar times the values over
  * 106.75, is the power. */
 TEST(photometric_and_film_units) {
-  OWNED(abbe_scene, scene);
   double v[200];
-  load_text(CAMERA "lights:\n- {name: lamp, kind: point, position: [0, 0, 0.9], intensity: 2, "
-                   "illuminant: E}\n" FLOOR BALL("flat"),
-            &scene);
+  OWNED(abbe_scene, scene) =
+      scene_of(CAMERA "lights:\n- {name: lamp, kind: point, position: [0, 0, 0.9], intensity: 2, "
+                      "illuminant: E}\n" FLOOR BALL("flat"));
   char *text = written(&scene, ABBE_SCENE_EXPORT_GLTF);
   double rgb[3];
   numbers_after(text, "\"color\":", rgb, 3);
@@ -156,8 +152,7 @@ static bool noted(abbe_note_kind kind, const char *name, const char *part) {
 }
 
 TEST(losses_are_said) {
-  abbe_scene scene;
-  load_text(CAMERA "ambient: 0.1\n" LIGHTS FLOOR BALL("murk"), &scene);
+  abbe_scene scene = scene_of(CAMERA "ambient: 0.1\n" LIGHTS FLOOR BALL("murk"));
   char *text = written(&scene, ABBE_SCENE_EXPORT_MITSUBA);
   assert_true(noted(ABBE_NOTE_LOST, "murk", "its dispersion"));
   assert_true(noted(ABBE_NOTE_CHANGED, "murk", "volpath"));
@@ -177,7 +172,7 @@ TEST(losses_are_said) {
   assert_non_null(strstr(text, "Shape \"sphere\" \"float radius\" 0.08"));
   done(text);
   abbe_scene_free(&scene);
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &scene);
+  scene = scene_of(CAMERA POINT_LIGHT FLOOR BALL("narrow"));
   text = written(&scene, ABBE_SCENE_EXPORT_PBRT);
   assert_true(noted(ABBE_NOTE_ASSUMED, "narrow", "400 to 700 nm"));
   done(text);
@@ -222,14 +217,13 @@ TEST(reflectances_are_read_back) {
   for (int i = 0; i < 4; i++) {
     char source[2000];
     double pair[600][2];
-    OWNED(abbe_scene, scene);
     snprintf(
         source, sizeof source,
         CAMERA POINT_LIGHT
         "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: %s}\n" BALL(
             "crown"),
         floors[i / 2]);
-    load_text(source, &scene);
+    OWNED(abbe_scene, scene) = scene_of(source);
     char *text = written(&scene, targets[i % 2]);
     const size_t count = read_pairs(text, targets[i % 2], pair);
     assert_true(count > 80 && pair[0][0] == 360 && pair[count - 1][0] == 830);
@@ -252,8 +246,7 @@ TEST(reflectances_are_read_back) {
 TEST(an_aperture_is_lost) {
   for (int target = 0; target < ABBE_SCENE_EXPORT_COUNT; target++)
     for (int lens = 0; lens < 2; lens++) {
-      OWNED(abbe_scene, scene);
-      load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+      OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("flat"));
       if (lens) scene.camera.aperture = 0.01, scene.camera.focus = 0.25;
       char *text = written(&scene, (abbe_scene_export_target)target);
       assert_int_equal(noted(ABBE_NOTE_LOST, "camera", "0.25 m"), lens);
@@ -264,8 +257,7 @@ TEST(an_aperture_is_lost) {
 
 /* Names become identifiers; what would end a comment does not. */
 TEST(names_do_no_harm) {
-  abbe_scene scene;
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+  abbe_scene scene = scene_of(CAMERA POINT_LIGHT FLOOR BALL("flat"));
   free(scene.object[1].name);
   scene.object[1].name = strdup("x\"--><b>'\n]\nimport os #");
   free(scene.path);
@@ -283,9 +275,8 @@ TEST(names_do_no_harm) {
 }
 
 TEST(nothing_half_written_stays) {
-  OWNED(abbe_scene, scene);
   char path[200], blocked[220];
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("crown"));
   /* a folder stands where the last companion is to be written */
   snprintf(path, sizeof path, "%s/it.xml", folder);
   snprintf(blocked, sizeof blocked, "%s/it-o2_brick.ply", folder);
@@ -346,17 +337,14 @@ static void check_pbrt(const char *text) {
 
 /* Runs it where the program is found; 0 without it. */
 static int checked_by(const char *program, const char *line) {
-  char command[500];
-  snprintf(command, sizeof command, "command -v %s > /dev/null 2>&1 || exit 0; cd %s && %s",
-           program, folder, line);
-  return system(command);
+  return system(
+      printed("command -v %s > /dev/null 2>&1 || exit 0; cd %s && %s", program, folder, line));
 }
 
 TEST(shipped_scenes_are_well_formed) {
   static const char *const names[] = {"gem", "metals", "prism", "glass", "diamond-studio"};
   for (size_t i = 0; i < (SANITIZED ? 2 : sizeof names / sizeof *names); i++) {
-    abbe_scene scene;
-    load_shipped(names[i], &scene);
+    abbe_scene scene = shipped_scene(names[i]);
     for (int target = 0; target < ABBE_SCENE_EXPORT_COUNT; target++) {
       char *text = written(&scene, (abbe_scene_export_target)target);
       if (target == ABBE_SCENE_EXPORT_PBRT) check_pbrt(text);
@@ -371,9 +359,8 @@ TEST(shipped_scenes_are_well_formed) {
       done(text);
     }
     assert_int_equal(checked_by("xmllint", "xmllint --noout it.xml"), 0);
-    assert_int_equal(checked_by("python3", "python3 -c \"compile(open('it.py').read(), 'it.py', "
-                                           "'exec')\""),
-                     0);
+    assert_int_equal(
+        checked_by("python3", "python3 -c \"compile(open('it.py').read(), 'it.py', 'exec')\""), 0);
     assert_int_equal(
         checked_by("grep", "! grep -Ev '^(#.*|scene[.][A-Za-z0-9_.]+ = ?.*)?$' it.scn"), 0);
     abbe_scene_free(&scene);

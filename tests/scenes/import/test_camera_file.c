@@ -9,9 +9,7 @@
   "- {name: brick, shape: box, size: [8cm, 2cm, 1cm], stand: [-0.1, 0.1, 0], material: flat}\n"
 
 static void make(const char *camera, abbe_scene *out) {
-  char text[2048];
-  snprintf(text, sizeof text, "materials: glass.yaml\ncamera: %s\n" OBJECTS, camera);
-  load_text(text, out);
+  *out = scene_of(printed("materials: glass.yaml\ncamera: %s\n" OBJECTS, camera));
 }
 
 /* Where an object shows, in shares of half the picture's width and height. */
@@ -44,9 +42,8 @@ TEST(objects_fill_the_picture) {
       {"{frame: [brick], fov: 20, fill: 0.5, size: [200, 400]}", 2, 2, 0.5},
       {"{frame: [brick, ball], fov: 60, fill: 0.8, elevation: 89, size: [300, 100]}", 1, 2, 0.8}};
   for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
-    OWNED(abbe_scene, scene);
     double min[2], max[2];
-    make(views[i].camera, &scene);
+    FILLED(abbe_scene, scene, make(views[i].camera, &scene));
     seen(&scene, views[i].first, views[i].last, min, max);
     assert_near(fmax(max[0], max[1]), views[i].fill, 1e-4);
     for (int k = 0; k < 2; k++) assert_near(min[k], -max[k], 1e-4);
@@ -54,9 +51,8 @@ TEST(objects_fill_the_picture) {
 }
 
 TEST(the_side_is_the_cameras_own) {
-  OWNED(abbe_scene, scene);
   double view[3];
-  make("{frame: [ball], elevation: 30, azimuth: 60, fov: 20}", &scene);
+  FILLED(abbe_scene, scene, make("{frame: [ball], elevation: 30, azimuth: 60, fov: 20}", &scene));
   for (int k = 0; k < 3; k++) view[k] = scene.camera.eye[k] - scene.camera.target[k];
   assert_near(atan2(view[2], hypot(view[0], view[1])), 30 * 3.14159265358979323846 / 180, 1e-12);
   assert_near(atan2(view[1], view[0]), 60 * 3.14159265358979323846 / 180, 1e-12);
@@ -64,8 +60,7 @@ TEST(the_side_is_the_cameras_own) {
 
 /* As where a camera that was led by hand is kept beside what the file frames. */
 TEST(an_eye_and_a_target_stay) {
-  OWNED(abbe_scene, scene);
-  make("{frame: [ball], eye: [0, -1, 1], target: [0.2, 0, 0]}", &scene);
+  FILLED(abbe_scene, scene, make("{frame: [ball], eye: [0, -1, 1], target: [0.2, 0, 0]}", &scene));
   assert_true(scene.camera.eye[1] == -1 && scene.camera.target[0] == 0.2);
   abbe_scene_free(&scene);
   make("{frame: [ball], eye: [0, -1, 1]}", &scene);
@@ -116,9 +111,8 @@ TEST(a_lens_has_its_angle_and_place) {
       {"{frame: [brick], lens: macro-60mm, elevation: 20, aperture: 16}", 0.06, 0},
       {"{eye: [0, -0.5, 0.1], target: [0, 0, 0.1], lens: normal-50mm, aperture: 16}", 0.05, 0.5}};
   for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
-    abbe_scene scene;
     double to[3], min[2], max[2];
-    make(views[i].camera, &scene);
+    FILLED(abbe_scene, scene, make(views[i].camera, &scene));
     const abbe_camera *c = &scene.camera;
     for (int k = 0; k < 3; k++) to[k] = c->target[k] - c->eye[k];
     const double far = sqrt(to[0] * to[0] + to[1] * to[1] + to[2] * to[2]);
@@ -129,13 +123,11 @@ TEST(a_lens_has_its_angle_and_place) {
     assert_near(c->focus, far, 1e-12);
     if (i == 0) seen(&scene, 1, 1, min, max);
     if (i == 0) assert_near(fmax(max[0], max[1]), 0.8, 1e-4);
-    abbe_scene_free(&scene);
   }
 }
 
 TEST(what_is_sharp_is_chosen) {
-  abbe_scene scene;
-  make("{" STANDS ", fov: 30, aperture: 8, focus: ball}", &scene);
+  FILLED(abbe_scene, scene, make("{" STANDS ", fov: 30, aperture: 8, focus: ball}", &scene));
   assert_near(scene.camera.focus, 1.1, 1e-12);
   assert_near(scene.camera.aperture, 0.012 / tan(15 * 3.14159265358979323846 / 180) / 8, 1e-12);
   abbe_scene_free(&scene);
@@ -148,12 +140,11 @@ TEST(what_is_sharp_is_chosen) {
       "- {name: pair (part 1), shape: sphere, radius: 3cm, centre: [0.2, 0.1, 0], material: flat}\n"
       "- {name: pair (part 2), shape: sphere, radius: 3cm, centre: [0.2, 0.5, 0], material: "
       "flat}\n";
-  load_text(parts, &scene);
+  scene = scene_of(parts);
   assert_near(scene.camera.focus, 1.3, 1e-12);
   abbe_scene_free(&scene);
   make("{" STANDS "}", &scene);
   assert_true(scene.camera.aperture == 0 && scene.camera.focus == 0);
-  abbe_scene_free(&scene);
 }
 
 TEST(pictures_say_their_exposure) {

@@ -27,7 +27,7 @@ static void make_folder(folder *f) {
   OK(abbe_file_write(f->zec, "x", 1, &error));
 }
 
-static void drop_folder(folder *f) {
+static void folder_free(folder *f) {
   unlink(f->file);
   unlink(f->zec);
   rmdir(f->path);
@@ -35,12 +35,10 @@ static void drop_folder(folder *f) {
 
 /* An object with its middle at 0.2 m, turned by a quarter. */
 static abbe_result parse(const folder *f, const char *rest, abbe_scene *scene, abbe_error *out) {
-  char text[2048], name[128];
-  snprintf(text, sizeof text,
-           HEAD "- {name: a, transform: [{rotate: {axis: [1, 0, 0], angle: 90}}, {translate: [0, "
-                "0, 0.2]}], %s}\n",
-           rest);
-  snprintf(name, sizeof name, "%s/scene.yaml", f->path);
+  const char *text = printed(HEAD "- {name: a, transform: [{rotate: {axis: [1, 0, 0], angle: 90}}, "
+                                  "{translate: [0, 0, 0.2]}], %s}\n",
+                             rest);
+  const char *name = printed("%s/scene.yaml", f->path);
   OK(abbe_file_write(name, text, strlen(text), &error));
   const abbe_result result = abbe_scene_load(name, NULL, scene, out);
   unlink(name);
@@ -52,9 +50,8 @@ static abbe_result parse(const folder *f, const char *rest, abbe_scene *scene, a
 
 static void check_layers(const folder *f, const char *rest, double nm, size_t count,
                          const double wanted[][3]) {
-  abbe_scene scene;
   abbe_film_layer layer[ABBE_FILM_MOST_LAYERS];
-  OK(parse(f, rest, &scene, &error));
+  MADE(abbe_scene, scene, parse(f, rest, &scene, &error));
   const abbe_coatings *c = scene.object[1].coatings;
   assert_int_equal(c->coating[0].count, count);
   OK(abbe_coating_at(&c->coating[0], nm, layer, &error));
@@ -63,12 +60,10 @@ static void check_layers(const folder *f, const char *rest, double nm, size_t co
     assert_near(layer[i].k, wanted[i][1], 1e-6);
     assert_near(layer[i].nm, wanted[i][2], 1e-3);
   }
-  abbe_scene_free(&scene);
 }
 
 TEST(layers_are_read_in_every_form) {
-  folder f;
-  make_folder(&f);
+  FILLED(folder, f, make_folder(&f));
   check_layers(&f, BOX "{layers: [[1.38, 99.6], [[0.42, 2.4], 10], [f2, 20]]}", 587.5618, 3,
                (const double[][3]){{1.38, 0, 99.6}, {0.42, 2.4, 10}, {1.620040, 0, 20}});
   check_layers(&f, BOX "{layers: [[1.38, 1], [2.15, 2]], quarter: 550}", 500, 2,
@@ -79,18 +74,16 @@ TEST(layers_are_read_in_every_form) {
                (const double[][3]){{1.377496, 0, 99.6}, {3.2, 4.4, 10}, {1.620040, 0, 100}});
   check_layers(&f, BOX "{file: COATING.DAT, name: AR, primary: 550}", 300, 1,
                (const double[][3]){{1.39, 0, 99.63768}});
-  drop_folder(&f);
 }
 
 /* Which faces have which coating, by the object's own axes. */
 TEST(facets_are_coated_by_name) {
-  folder f;
-  make_folder(&f);
-  abbe_scene scene;
-  OK(parse(&f,
-           BOX "[{layers: [[1.38, 99.6]]}, {layers: [[2.4, 60]], faces: [table]}, {layers: [[2.4, "
-               "90]], faces: GIRDLE}]",
-           &scene, &error));
+  FILLED(folder, f, make_folder(&f));
+  MADE(abbe_scene, scene,
+       parse(&f,
+             BOX "[{layers: [[1.38, 99.6]]}, {layers: [[2.4, 60]], faces: [table]}, {layers: "
+                 "[[2.4, 90]], faces: GIRDLE}]",
+             &scene, &error));
   const abbe_object *o = &scene.object[1];
   size_t count[4] = {0};
   for (size_t i = 0; i < o->mesh.face_count; i++) {
@@ -104,19 +97,16 @@ TEST(facets_are_coated_by_name) {
   assert_int_equal(count[1], 2);
   assert_int_equal(count[2], 8);
   abbe_scene_free(&scene);
-  char rest[512];
-  snprintf(rest, sizeof rest,
-           "shape: cut, file: %s/scenes/designs/brilliant-diamond.asc, width: 0.1, material: "
-           "n-bk7, coating: {layers: [[1.38, 99.6]], faces: [pavilion]}",
-           ABBE_SOURCE_DIR);
-  OK(parse(&f, rest, &scene, &error));
+  OK(parse(&f,
+           printed("shape: cut, file: %s/scenes/designs/brilliant-diamond.asc, width: 0.1, "
+                   "material: n-bk7, coating: {layers: [[1.38, 99.6]], faces: [pavilion]}",
+                   ABBE_SOURCE_DIR),
+           &scene, &error));
   double coated = 0, faces = (double)scene.object[1].mesh.face_count;
   for (size_t i = 0; i < scene.object[1].mesh.face_count; i++)
     coated += abbe_coatings_on(scene.object[1].coatings, i) != NULL;
   assert_true(coated > 0.2 * faces && coated < 0.6 * faces);
   assert_int_equal(abbe_scene_file_count(&scene), 4 + 1 + 6 + 1);
-  abbe_scene_free(&scene);
-  drop_folder(&f);
 }
 
 TEST(coatings_that_cannot_be_are_refused) {
@@ -132,9 +122,9 @@ TEST(coatings_that_cannot_be_are_refused) {
       {ABBE_SCHEMA, BOX "{layers: [[1.38]]}", "a layer is [what, nm]"},
       {ABBE_SCHEMA, BOX "{layers: []}", "'layers' is empty"},
       {ABBE_SCHEMA,
-       BOX "{layers: [[1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, "
-           "1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], "
-           "[1.4, 1]]}",
+       BOX
+       "{layers: [[1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], "
+       "[1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1]]}",
        "16"},
       {ABBE_NOT_FOUND, BOX "{layers: [[MgF3, 20]]}", "MgF3"},
       {ABBE_UNSUPPORTED, BOX "{layers: [[sapphire, 20]]}", "'sapphire' is a crystal"},
@@ -167,11 +157,9 @@ TEST(coatings_that_cannot_be_are_refused) {
       {ABBE_IO, BOX "{file: none.dat, name: AR}", "none.dat"},
       {ABBE_SCHEMA, BOX "{file: COATING.DAT}", "name"},
   };
-  folder f;
-  make_folder(&f);
+  FILLED(folder, f, make_folder(&f));
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
     abbe_scene scene;
     REFUSED(rows[i].code, rows[i].part, parse(&f, rows[i].rest, &scene, &error));
   }
-  drop_folder(&f);
 }

@@ -24,9 +24,8 @@ static void surroundings(const char *text, abbe_environment *out) {
 }
 
 static void check_irradiance(const char *text, const double normal[3], double expected) {
-  OWNED(abbe_environment, e);
   double rgb[3];
-  surroundings(text, &e);
+  FILLED(abbe_environment, e, surroundings(text, &e));
   abbe_environment_irradiance(&e, normal, rgb);
   assert_near(rgb[0], expected, 1e-4 * (expected + 0.2));
 }
@@ -42,9 +41,9 @@ TEST(known_irradiances) {
   check_irradiance("{sky: {type: clear, irradiance: 3, elevation: 30}}", up, 3);
   check_irradiance("{sky: {type: 7, irradiance: 3}, sun: {elevation: 30, irradiance: 4}}", up, 5);
   check_irradiance("{sun: {towards: [0, 0, 2], irradiance: 4}}", up, 4);
-  check_irradiance("{sun: {elevation: 90, irradiance: 4}, rotate: 77, tilt: {axis: [1, 0, 0], "
-                   "angle: 60}}",
-                   up, 2);
+  check_irradiance(
+      "{sun: {elevation: 90, irradiance: 4}, rotate: 77, tilt: {axis: [1, 0, 0], angle: 60}}", up,
+      2);
   check_irradiance("{softboxes: [{elevation: 90, radius: 30, radiance: 4}]}", up, ABBE_PI);
   check_irradiance("{uniform: 1, dome: iso, softboxes: [{elevation: 90, radius: 30, radiance: 4}, "
                    "{elevation: -90, radius: 30, radiance: 8}]}",
@@ -67,20 +66,18 @@ TEST(places_and_turns) {
   assert_near(rgb[2], 0, 1e-12);
   abbe_environment_free(&e);
   /* +y becomes -x by a quarter turn; rolled by a quarter, the width stands upright */
-  surroundings(
-      "{softboxes: [{towards: [0, 1, 0], width: 40, height: 4, roll: 90, radiance: 1}], rotate: "
-      "90}",
-      &e);
+  surroundings("{softboxes: [{towards: [0, 1, 0], width: 40, height: 4, roll: 90, radiance: 1}], "
+               "rotate: 90}",
+               &e);
   radiance_at(&e, -1, 0, tan(18 * ABBE_PI / 180), rgb);
   assert_near(rgb[0], 1, 1e-3);
   radiance_at(&e, -1, tan(4 * ABBE_PI / 180), 0, rgb);
   assert_near(rgb[0], 0, 1e-12);
   abbe_environment_free(&e);
   /* ... and about x by a quarter it goes from +y to +z */
-  surroundings(
-      "{spots: [{azimuth: 90, elevation: 0, sigma: 2, radiance: 5}], tilt: {axis: [1, 0, 0], "
-      "angle: 90}}",
-      &e);
+  surroundings("{spots: [{azimuth: 90, elevation: 0, sigma: 2, radiance: 5}], tilt: {axis: [1, 0, "
+               "0], angle: 90}}",
+               &e);
   radiance_at(&e, 0, 0, 1, rgb);
   assert_near(rgb[0], 5, 0.1);
   abbe_environment_free(&e);
@@ -90,8 +87,7 @@ TEST(places_and_turns) {
 
 TEST(aset) {
   static const double elevations[] = {-10, 20, 60, 80};
-  OWNED(abbe_environment, e);
-  surroundings("{dome: aset}", &e);
+  FILLED(abbe_environment, e, surroundings("{dome: aset}", &e));
   for (int i = 0; i < 4; i++) {
     double rgb[3];
     radiance_at(&e, cos(elevations[i] * ABBE_PI / 180), 0, sin(elevations[i] * ABBE_PI / 180), rgb);
@@ -102,27 +98,24 @@ TEST(aset) {
 
 TEST(pictures) {
   static const char *const names[] = {"R", "G", "B"};
-  abbe_image image;
-  OWNED(abbe_environment, e);
   double rgb[3];
-  char name[64], path[96], text[512];
-  snprintf(name, sizeof name, "abbe-test-surroundings-%d.exr", (int)getpid());
-  snprintf(path, sizeof path, "/tmp/%s", name);
-  OK(abbe_image_make(8, 4, 3, names, &image, &error));
+  const char *name = printed("abbe-test-surroundings-%d.exr", (int)getpid());
+  const char *path = printed("/tmp/%s", name);
+  MADE(abbe_image, image, abbe_image_make(8, 4, 3, names, &image, &error));
   for (size_t i = 0; i < 96; i++) image.data[i] = 0.5f;
   OK(abbe_exr_write(path, &image, &error));
-  abbe_image_free(&image);
-  snprintf(text, sizeof text,
-           "{file: %s, illuminant: A, scale: 4, sun: {elevation: 90, irradiance: 1}}", name);
-  surroundings(text, &e);
+  FILLED(
+      abbe_environment, e,
+      surroundings(
+          printed("{file: %s, illuminant: A, scale: 4, sun: {elevation: 90, irradiance: 1}}", name),
+          &e));
   assert_string_equal(e.path, path);
   assert_int_equal(e.illuminant.kind, ABBE_ILLUMINANT_A);
   assert_int_equal(e.map.width, 8);
   radiance_at(&e, 0, 1, -3, rgb);
   assert_near(rgb[1], 2, 1e-6);
   abbe_environment_free(&e);
-  snprintf(text, sizeof text, "file: %s\nlayout: cube\n", name);
-  REFUSED(ABBE_SCHEMA, "text:1: ", parse(text, &e, &error));
+  REFUSED(ABBE_SCHEMA, "text:1: ", parse(printed("file: %s\nlayout: cube\n", name), &e, &error));
   unlink(path);
 }
 
@@ -189,10 +182,9 @@ TEST(what_is_refused) {
 
 /* Sodium light has one colour. */
 TEST(an_illuminant_has_colours) {
-  char path[64], text[128];
   OWNED(abbe_environment, e);
-  snprintf(path, sizeof path, "/tmp/abbe-test-line-%d.txt", (int)getpid());
-  snprintf(text, sizeof text, "{uniform: 1,\n illuminant: %s}", path);
+  const char *path = printed("/tmp/abbe-test-line-%d.txt", (int)getpid());
+  const char *text = printed("{uniform: 1,\n illuminant: %s}", path);
   static const char line[] = "588 0\n589 1\n590 0\n", lines[] = "400 1\n500 3\n600 2\n700 1\n";
   OK(abbe_file_write(path, line, strlen(line), &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "text:2: ", parse(text, &e, &error));
@@ -209,8 +201,7 @@ TEST(an_illuminant_has_colours) {
   "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5}\n"
 
 TEST(scenes_have_surroundings) {
-  abbe_scene scene;
-  load_text(VIEW "environment: {uniform: 1, size: 64}\n", &scene);
+  abbe_scene scene = scene_of(VIEW "environment: {uniform: 1, size: 64}\n");
   assert_int_equal(scene.light_count, 0);
   assert_non_null(scene.environment);
   assert_ptr_equal(abbe_scene_illuminant(&scene), &scene.environment->illuminant);
@@ -223,7 +214,7 @@ TEST(scenes_have_surroundings) {
     if (abbe_scene_file(&scene, i)) found += strcmp(abbe_scene_file(&scene, i), "a.exr") == 0;
   assert_int_equal(found, 1);
   abbe_scene_free(&scene);
-  load_text(VIEW POINT_LIGHT, &scene);
+  scene = scene_of(VIEW POINT_LIGHT);
   assert_null(scene.environment);
   assert_ptr_equal(abbe_scene_illuminant(&scene), &scene.light[0].illuminant);
   abbe_scene_free(&scene);
@@ -240,12 +231,10 @@ TEST(what_is_documented_loads) {
   OK(abbe_file_read(ABBE_SOURCE_DIR "/docs/scene-files.md", 1 << 20, &text, &size, &error));
   for (char *at = text; (at = strstr(at, "```yaml\nenvironment:")) != NULL; found++) {
     at += strlen("```yaml\n");
-    char scene_text[4096];
     const int length = (int)(strstr(at, "```") - at);
-    snprintf(scene_text, sizeof scene_text, "%s%.*s", VIEW, length, at);
-    OWNED(abbe_scene, scene);
+    const char *scene_text = printed("%s%.*s", VIEW, length, at);
     double rgb[3];
-    load_text(scene_text, &scene);
+    OWNED(abbe_scene, scene) = scene_of(scene_text);
     abbe_environment_irradiance(scene.environment, up, rgb);
     assert_int_in_range(found, 0, 2);
     assert_near(rgb[1], grounds[found], tolerance[found]);

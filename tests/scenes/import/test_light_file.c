@@ -70,9 +70,9 @@ TEST(lights_change_alone) {
       {"background=0.25", "lights.lamp={kind: point, position: [0, 0, 0.28], intensity: 3}"},
       {"lights.lamp.illuminant=A", "lights.lamp.intensity=0.5"}};
   const char *path = ABBE_SOURCE_DIR "/scenes/gem.yaml";
-  abbe_scene scene, anew;
+  abbe_scene anew;
   abbe_error why = {0};
-  OK(abbe_scene_load(path, NULL, &scene, &error));
+  MADE(abbe_scene, scene, abbe_scene_load(path, NULL, &scene, &error));
   const abbe_object *objects = scene.object;
   for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
     const abbe_scene_options options = {.set = sets[i], .set_count = 2};
@@ -99,5 +99,4 @@ TEST(lights_change_alone) {
     assert_int_not_equal(abbe_scene_load_lights(path, &options, &scene, &why), ABBE_OK);
     assert_true(scene.light[0].power == 0.5 && scene.ambient != 0.5);
   }
-  abbe_scene_free(&scene);
 }

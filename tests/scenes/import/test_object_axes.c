@@ -12,20 +12,17 @@
   "90}}, {translate: [0, 0, 0.2]}], "
 
 static abbe_result parse(const char *rest, abbe_scene *scene, abbe_error *error) {
-  char text[2048];
-  snprintf(text, sizeof text, HEAD "%s}\n", rest);
+  const char *text = printed(HEAD "%s}\n", rest);
   return abbe_scene_parse(text, strlen(text), "scene", NULL, scene, error);
 }
 
 static void check_axes(const char *rest, const double x[3], const double z[3]) {
-  abbe_scene scene;
-  OK(parse(rest, &scene, &error));
+  MADE(abbe_scene, scene, parse(rest, &scene, &error));
   const abbe_object *o = &scene.object[1];
   for (int k = 0; k < 3; k++) {
     assert_near(o->axis_x[k], x[k], 1e-12);
     assert_near(o->axis[k], z[k], 1e-12);
   }
-  abbe_scene_free(&scene);
 }
 
 TEST(axes_turn_with_the_object) {
@@ -39,11 +36,10 @@ TEST(axes_turn_with_the_object) {
 }
 
 TEST(x_is_made_square_to_z) {
-  abbe_scene scene;
-  OK(parse("material: topaz, axes: {x: [1, 0, 0.1], z: [0, 0, 1]}", &scene, &error));
+  MADE(abbe_scene, scene,
+       parse("material: topaz, axes: {x: [1, 0, 0.1], z: [0, 0, 1]}", &scene, &error));
   assert_near(abbe_vector_dot(scene.object[1].axis_x, scene.object[1].axis), 0, 1e-15);
   assert_near(scene.object[1].axes_turned, atan(0.1), 1e-12);
-  abbe_scene_free(&scene);
 }
 
 TEST(axes_that_cannot_be_are_refused) {

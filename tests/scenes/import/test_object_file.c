@@ -32,11 +32,10 @@ static abbe_scene read(const char *text) {
 
 /* In a sentence that has those words and the line. */
 static void refuses(const char *object, const char *says) {
-  abbe_scene one = {.object = calloc(1, sizeof *one.object)};
+  OWNED(abbe_scene, one) = {.object = calloc(1, sizeof *one.object)};
   abbe_error why = {0};
   abbe_yaml *yaml;
-  char text[512];
-  snprintf(text, sizeof text, "\n%s", object);
+  const char *text = printed("\n%s", object);
   OK(abbe_yaml_parse(text, strlen(text), "text", &yaml, &error));
   assert_int_not_equal(abbe_object_read(yaml, abbe_yaml_root(yaml), ABBE_SOURCE_DIR "/tests/bad/",
                                         &table, one.object, 1, &one.object_count, &why),
@@ -44,7 +43,6 @@ static void refuses(const char *object, const char *says) {
   if (strstr(why.text, says) == NULL || strstr(why.text, "text:2:") == NULL)
     fail_msg("%s", why.text);
   abbe_yaml_free(yaml);
-  abbe_scene_free(&one);
 }
 
 GROUP(load_table, free_table);
@@ -59,11 +57,9 @@ TEST(cuts_are_solids_of_their_planes) {
               {"brilliant-diamond", 73, (0.903536 + 0.349458) / 2.039182},
               {"step-square", 21, 0}};
   for (size_t i = 0; i < sizeof cuts / sizeof *cuts; i++) {
-    char text[256];
-    snprintf(text, sizeof text,
-             "{shape: cut, file: ../../scenes/designs/%s.asc, width: 0.01, material: water}",
-             cuts[i].design);
-    abbe_scene scene = read(text);
+    OWNED(abbe_scene, scene) = read(
+        printed("{shape: cut, file: ../../scenes/designs/%s.asc, width: 0.01, material: water}",
+                cuts[i].design));
     const abbe_object *stone = &scene.object[0];
     assert_int_equal(stone->exact.kind, ABBE_EXACT_CONVEX);
     assert_int_equal(stone->exact.count, cuts[i].planes);
@@ -77,16 +73,13 @@ TEST(cuts_are_solids_of_their_planes) {
       listed = listed || (file != NULL && strstr(file, cuts[i].design) != NULL);
     }
     assert_true(listed);
-    abbe_scene_free(&scene);
   }
 }
 
 #define STONE "{shape: cut, width: 0.01, material: water, file: "
 
 static abbe_scene read_stone(const char *file, const char *keys) {
-  char text[512];
-  snprintf(text, sizeof text, STONE "'%s'%s}", file, keys);
-  return read(text);
+  return read(printed(STONE "'%s'%s}", file, keys));
 }
 
 /* Whether the stone has the plane that another one's becomes where tangents grow by k. */
@@ -103,7 +96,8 @@ static bool has_plane(const abbe_exact *stone, const double plane[4], double k) 
 /* Every facet's tangent is as many times what it was as the main facets' is, its azimuth and the
  * outline stay, and no corner lies outside any plane. */
 static void recut(const char *file, const char *keys, double crown, double pavilion) {
-  abbe_scene own = read_stone(file, ""), other = read_stone(file, keys);
+  OWNED(abbe_scene, own) = read_stone(file, "");
+  OWNED(abbe_scene, other) = read_stone(file, keys);
   const abbe_object *a = &own.object[0], *b = &other.object[0];
   const double upright = 1e-6;
   assert_int_equal(b->exact.kind, ABBE_EXACT_CONVEX);
@@ -120,15 +114,12 @@ static void recut(const char *file, const char *keys, double crown, double pavil
     assert_near(b->max[k], a->max[k], 1e-12);
     assert_near(b->cut_deg[k], a->cut_deg[k], 0); /* the design's, not what it is cut at */
   }
-  abbe_scene_free(&own);
-  abbe_scene_free(&other);
 }
 
 static void write_gcs(const char *path) {
-  OWNED(abbe_cut, cut);
-  OWNED(abbe_cut_polyhedron, stone);
-  OK(abbe_cut_file_read(ABBE_SOURCE_DIR "/scenes/designs/emerald.asc", &cut, NULL, &error));
-  OK(abbe_cut_polyhedron_make(&cut, 0, &stone, &error));
+  MADE(abbe_cut, cut,
+       abbe_cut_file_read(ABBE_SOURCE_DIR "/scenes/designs/emerald.asc", &cut, NULL, &error));
+  MADE(abbe_cut_polyhedron, stone, abbe_cut_polyhedron_make(&cut, 0, &stone, &error));
   FILE *to = fopen(path, "w");
   assert_non_null(to);
   OK(abbe_cut_gcs_write(&cut, &stone, to, NULL, &error));
@@ -138,7 +129,7 @@ static void write_gcs(const char *path) {
 TEST(cuts_are_cut_at_other_angles) {
   const double turn = 3.14159265358979323846 / 180;
   const char *const quartz = "../../scenes/designs/brilliant-quartz.asc";
-  char folder[] = "/tmp/abbe-test-design-XXXXXX", path[64], keys[120];
+  char folder[] = "/tmp/abbe-test-design-XXXXXX";
   abbe_scene scene = read_stone(quartz, "");
   assert_near(scene.object[0].cut_deg[0], 42, 0);
   assert_near(scene.object[0].cut_deg[1], 43, 0);
@@ -157,14 +148,14 @@ TEST(cuts_are_cut_at_other_angles) {
   abbe_scene_free(&scene);
   recut(barion, ", pavilion: 38", both, both);
   assert_non_null(mkdtemp(folder));
-  snprintf(path, sizeof path, "%s/emerald.gcs", folder);
+  const char *path = printed("%s/emerald.gcs", folder);
   write_gcs(path);
   scene = read_stone(path, "");
   const double own[] = {scene.object[0].cut_deg[0], scene.object[0].cut_deg[1]};
   assert_true(own[0] > 20 && own[0] < 70 && own[1] > 20 && own[1] < 70);
   abbe_scene_free(&scene);
-  snprintf(keys, sizeof keys, ", crown: %.9f, pavilion: %.9f", own[0] - 4, own[1] + 3);
-  recut(path, keys, tan((own[0] - 4) * turn) / tan(own[0] * turn),
+  recut(path, printed(", crown: %.9f, pavilion: %.9f", own[0] - 4, own[1] + 3),
+        tan((own[0] - 4) * turn) / tan(own[0] * turn),
         tan((own[1] + 3) * turn) / tan(own[1] * turn));
   assert_int_equal(remove(path), 0);
   assert_int_equal(remove(folder), 0);
@@ -177,10 +168,9 @@ TEST(angles_that_no_stone_has) {
       {", pavilion: -41", "'pavilion' is the angle"},
       {", crown: steep", "crown: steep"},
       {", crown: 89.9", "tangents can become"}};
-  char text[512];
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-    snprintf(text, sizeof text, STONE "../../scenes/designs/brilliant-quartz.asc%s}", wrong[i][0]);
-    refuses(text, wrong[i][1]);
+    refuses(printed(STONE "../../scenes/designs/brilliant-quartz.asc%s}", wrong[i][0]),
+            wrong[i][1]);
   }
   refuses(STONE "../../scenes/designs/rose.asc, pavilion: 40}", "pavilion has no slanted facet");
   refuses(STONE "../../scenes/designs/barion.asc, crown: 30, pavilion: 40}", "same tangent ratio");
@@ -199,16 +189,15 @@ TEST(knots_are_read) {
   assert_int_equal(scene.object[0].mesh.face_count, 2 * 90 * 12);
   abbe_scene_free(&scene);
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-    char text[256];
-    snprintf(text, sizeof text, "{shape: knot, major: 0.05, minor: 0.025, %s, reflectance: 0.5}",
-             bad[i].keys);
-    refuses(text, bad[i].says);
+    refuses(printed("{shape: knot, major: 0.05, minor: 0.025, %s, reflectance: 0.5}", bad[i].keys),
+            bad[i].says);
   }
 }
 
 TEST(a_sphere_stays_one_under_similarities_only) {
-  abbe_scene scene = read("{shape: sphere, radius: 2, material: water, transform: [{scale: 0.5}, "
-                          "{rotate: {axis: [1, 2, 3], angle: 40}}, {translate: [1, 2, 3]}]}");
+  OWNED(abbe_scene, scene) =
+      read("{shape: sphere, radius: 2, material: water, transform: [{scale: 0.5}, {rotate: {axis: "
+           "[1, 2, 3], angle: 40}}, {translate: [1, 2, 3]}]}");
   const abbe_exact *exact = &scene.object[0].exact;
   assert_int_equal(exact->kind, ABBE_EXACT_SPHERE);
   assert_true(fabs(exact->radius - 1) < 1e-12);
@@ -222,7 +211,6 @@ TEST(a_sphere_stays_one_under_similarities_only) {
   abbe_scene_free(&scene);
   scene = read("{shape: sphere, radius: 1, material: water, transform: [{scale: [1, 1, 2]}]}");
   assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_NONE);
-  abbe_scene_free(&scene);
 }
 
 /* z unless the scene says else, turned and never stretched with the object. */
@@ -238,13 +226,10 @@ TEST(crystals_have_an_optic_axis) {
        {0, 0.70710678118654752, 0.70710678118654752}},
   };
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    char text[256];
-    snprintf(text, sizeof text, "{shape: box, size: [1, 1, 1], %s material: calcite}",
-             rows[i].keys);
-    abbe_scene scene = read(text);
+    OWNED(abbe_scene, scene) =
+        read(printed("{shape: box, size: [1, 1, 1], %s material: calcite}", rows[i].keys));
     for (int k = 0; k < 3; k++)
       assert_true(fabs(scene.object[0].axis[k] - rows[i].axis[k]) < 1e-12);
-    abbe_scene_free(&scene);
   }
 }
 
@@ -267,7 +252,7 @@ TEST(mirrors_are_metals_or_numbers_of_any_shape) {
       {"{mesh: inverted.obj, mirror: copper}", ABBE_EXACT_NONE, "copper", 0},
   };
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    abbe_scene scene = read(rows[i].text);
+    OWNED(abbe_scene, scene) = read(rows[i].text);
     const abbe_object *o = &scene.object[0];
     assert_int_equal(scene.object_count, 1);
     assert_int_equal(abbe_object_kind_of(o), ABBE_OBJECT_MIRROR);
@@ -280,23 +265,21 @@ TEST(mirrors_are_metals_or_numbers_of_any_shape) {
       assert_string_equal(o->conductor->name, rows[i].conductor);
     else
       assert_null(o->conductor);
-    abbe_scene_free(&scene);
   }
-  abbe_scene scene = read("{shape: sphere, radius: 1, material: water}");
+  OWNED(abbe_scene, scene) = read("{shape: sphere, radius: 1, material: water}");
   assert_int_equal(abbe_object_kind_of(&scene.object[0]), ABBE_OBJECT_REFRACTOR);
   assert_null(abbe_scene_mirror(&scene));
-  abbe_scene_free(&scene);
 }
 
 /* Along a direction or around an axis, which turns with the object. */
 TEST(mirrors_may_be_brushed) {
-  abbe_scene scene = read("{shape: sphere, radius: 1, mirror: silver, roughness: 0.25}");
+  OWNED(abbe_scene, scene) = read("{shape: sphere, radius: 1, mirror: silver, roughness: 0.25}");
   assert_true(scene.object[0].brushing.facets.x == 0.25);
   assert_true(scene.object[0].brushing.facets.y == 0.25);
   abbe_scene_free(&scene);
-  scene = read("{shape: sphere, radius: 1, mirror: 0.9, roughness: [0.1, 0.4], brushed: {around: "
-               "[0, 0, 2]}, transform: [{rotate: {axis: [1, 0, 0], angle: 90}}, {translate: [1, 2, "
-               "3]}]}");
+  scene =
+      read("{shape: sphere, radius: 1, mirror: 0.9, roughness: [0.1, 0.4], brushed: {around: [0, "
+           "0, 2]}, transform: [{rotate: {axis: [1, 0, 0], angle: 90}}, {translate: [1, 2, 3]}]}");
   const abbe_brushing *b = &scene.object[0].brushing;
   assert_true(abbe_brushing_is_rough(b) && b->around);
   assert_true(b->facets.x == 0.1 && b->facets.y == 0.4);
@@ -304,16 +287,15 @@ TEST(mirrors_may_be_brushed) {
   abbe_scene_free(&scene);
   scene = read("{shape: sphere, radius: 1, mirror: 0.9, roughness: 0}");
   assert_false(abbe_brushing_is_rough(&scene.object[0].brushing));
-  abbe_scene_free(&scene);
 }
 
 TEST(boxes_are_planes_or_parallelograms) {
-  abbe_scene scene = read("{shape: box, size: [1, 2, 3], material: diamond}");
+  OWNED(abbe_scene, scene) = read("{shape: box, size: [1, 2, 3], material: diamond}");
   assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_CONVEX);
   assert_int_equal(scene.object[0].exact.count, 6);
   abbe_scene_free(&scene);
-  scene = read("{shape: box, size: [1, 2, 3], reflectance: [0.1, 0.2, 0.3], transform: "
-               "[{scale: [-1, 1, 1]}, {rotate: {axis: [0, 0, 1], angle: 30}}]}");
+  scene = read("{shape: box, size: [1, 2, 3], reflectance: [0.1, 0.2, 0.3], transform: [{scale: "
+               "[-1, 1, 1]}, {rotate: {axis: [0, 0, 1], angle: 30}}]}");
   const abbe_object *box = &scene.object[0];
   assert_int_equal(box->exact.kind, ABBE_EXACT_PARALLELOGRAMS);
   assert_int_equal(box->exact.count, 6);
@@ -325,34 +307,31 @@ TEST(boxes_are_planes_or_parallelograms) {
     for (int k = 0; k < 3; k++) middle[k] = p[k] + 0.5 * (p[3 + k] + p[6 + k]);
     assert_true(abbe_vector_dot(n, middle) > 0);
   }
-  abbe_scene_free(&scene);
 }
 
 TEST(steps_apply_in_order) {
-  abbe_scene scene = read("{shape: rectangle, width: 1, height: 1, reflectance: 1, transform: "
-                          "[{translate: [1, 0, 0]}, {rotate: {axis: [0, 0, 1], angle: 90}}]}");
+  OWNED(abbe_scene, scene) =
+      read("{shape: rectangle, width: 1, height: 1, reflectance: 1, transform: [{translate: [1, 0, "
+           "0]}, {rotate: {axis: [0, 0, 1], angle: 90}}]}");
   assert_true(fabs(scene.object[0].min[1] - 0.5) < 1e-12);
   assert_true(fabs(scene.object[0].max[1] - 1.5) < 1e-12);
-  abbe_scene_free(&scene);
 }
 
 TEST(look_turns_z_to_the_target) {
-  abbe_scene scene = read("{shape: rectangle, width: 2, height: 1, reflectance: 1, transform: "
-                          "[{look: {from: [1, 2, 3], to: [1, -7, 3]}}]}");
+  OWNED(abbe_scene, scene) = read("{shape: rectangle, width: 2, height: 1, reflectance: 1, "
+                                  "transform: [{look: {from: [1, 2, 3], to: [1, -7, 3]}}]}");
   const abbe_object *o = &scene.object[0];
   assert_true(fabs(o->mesh.normal[0][1] + 1) < 1e-12);
   assert_true(fabs(o->max[0] - 2) < 1e-12 && fabs(o->max[2] - 3.5) < 1e-12);
   assert_true(fabs(o->min[1] - 2) < 1e-12 && fabs(o->max[1] - 2) < 1e-12);
-  abbe_scene_free(&scene);
 }
 
 TEST(an_inverted_mesh_is_fixed_and_said) {
-  abbe_scene scene = read("{mesh: inverted.obj, smooth: false, material: n-sf11}");
+  OWNED(abbe_scene, scene) = read("{mesh: inverted.obj, smooth: false, material: n-sf11}");
   assert_non_null(scene.object[0].fixes);
   assert_non_null(strstr(scene.object[0].fixes, "inside-out"));
   assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_CONVEX);
   assert_int_equal(scene.object[0].exact.count, 4);
-  abbe_scene_free(&scene);
 }
 
 /* A cube without normals in its file is cut, unless the scene says otherwise; the same to whoever
@@ -363,10 +342,8 @@ TEST(a_die_is_what_the_scene_says) {
     bool cut;
   } dice[] = {{"", true}, {"smooth: true, ", false}, {"smooth: false, ", true}};
   for (size_t i = 0; i < sizeof dice / sizeof *dice; i++) {
-    char text[256];
-    snprintf(text, sizeof text, "{mesh: ../meshes/die.obj, %sfit: 0.02, material: water}",
-             dice[i].key);
-    abbe_scene scene = read(text);
+    OWNED(abbe_scene, scene) =
+        read(printed("{mesh: ../meshes/die.obj, %sfit: 0.02, material: water}", dice[i].key));
     const abbe_object *o = &scene.object[0];
     assert_int_equal(o->exact.kind, dice[i].cut ? ABBE_EXACT_CONVEX : ABBE_EXACT_NONE);
     assert_int_equal(o->exact.convex.verdict,
@@ -379,12 +356,11 @@ TEST(a_die_is_what_the_scene_says) {
     assert_true(abbe_vector_normalise(own));
     for (int k = 0; k < 3; k++)
       assert_int_equal(abbe_vector_dot(own, o->mesh.normal[f[k]]) > 0.999, dice[i].cut);
-    abbe_scene_free(&scene);
   }
 }
 
 TEST(parts_of_a_mesh_are_objects) {
-  abbe_scene scene = read("{name: boxes, mesh: ../meshes/crossing.obj, material: water}");
+  OWNED(abbe_scene, scene) = read("{name: boxes, mesh: ../meshes/crossing.obj, material: water}");
   assert_int_equal(scene.object_count, 2);
   assert_string_equal(scene.object[1].name, "boxes (part 2 of 2)");
   assert_int_equal(scene.object[1].exact.count, 6);
@@ -394,14 +370,12 @@ TEST(parts_of_a_mesh_are_objects) {
   scene = read("{mesh: ../meshes/crossing.obj, reflectance: 1}");
   assert_int_equal(scene.object_count, 1);
   assert_null(scene.object[0].fixes);
-  abbe_scene_free(&scene);
 }
 
 TEST(paths_follow_the_folder) {
-  char *path = abbe_scene_value_path("scenes/", "a.png");
+  FREED char *path = abbe_scene_value_path("scenes/", "a.png");
   assert_string_equal(path, "scenes/a.png");
   free(path);
   path = abbe_scene_value_path("scenes/", "/a.png");
   assert_string_equal(path, "/a.png");
-  free(path);
 }

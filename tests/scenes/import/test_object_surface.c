@@ -42,7 +42,7 @@ TEST(a_size_and_a_place_are_taken_from_the_bounds) {
   const double turn[3] = {0, 0, 1}, half_pi = 1.57079632679489662;
   abbe_object_surface s = request();
   s.fit = 0.02;
-  abbe_scene scene = place(test_boxes(&box, 1), &s, true);
+  OWNED(abbe_scene, scene) = place(test_boxes(&box, 1), &s, true);
   assert_near(scene.object[0].max[0] - scene.object[0].min[0], 0.02, 1e-15);
   assert_near(scene.object[0].max[1] - scene.object[0].min[1], 0.01, 1e-15);
   assert_near(scene.object[0].min[0], 0.05, 1e-15); /* about the origin, as scale is */
@@ -55,7 +55,6 @@ TEST(a_size_and_a_place_are_taken_from_the_bounds) {
   assert_near(o->max[1] - o->min[1], 0.02, 1e-15);
   for (int k = 0; k < 3; k++) assert_near(0.5 * (o->min[k] + o->max[k]), s.centre[k], 1e-15);
   assert_int_equal(o->exact.kind, ABBE_EXACT_CONVEX);
-  abbe_scene_free(&scene);
 }
 
 TEST(a_width_is_the_smaller_side_and_a_foot_the_lowest) {
@@ -65,7 +64,7 @@ TEST(a_width_is_the_smaller_side_and_a_foot_the_lowest) {
   s.centred = s.stands = true;
   s.centre[0] = 0.1;
   s.centre[2] = 0.5;
-  abbe_scene scene = place(test_boxes(&box, 1), &s, true);
+  OWNED(abbe_scene, scene) = place(test_boxes(&box, 1), &s, true);
   const abbe_object *o = &scene.object[0];
   const double min[] = {0.094, -0.003, 0.5}, max[] = {0.106, 0.003, 0.503};
   for (int k = 0; k < 3; k++) {
@@ -73,13 +72,13 @@ TEST(a_width_is_the_smaller_side_and_a_foot_the_lowest) {
     assert_near(o->max[k], max[k], 1e-15);
   }
   assert_near(o->fitted, 0.003, 1e-18);
-  abbe_scene_free(&scene);
 }
 
 /* The size that is asked for is the solid's, without the sheet that hangs on it. */
 TEST(what_is_dropped_has_no_size) {
   const test_box box = {{0, 0, 0}, {4, 2, 1}, false};
-  abbe_mesh whole = test_boxes(&box, 1), m;
+  OWNED(abbe_mesh, whole) = test_boxes(&box, 1);
+  abbe_mesh m;
   const size_t n = whole.vertex_count, f = whole.face_count;
   OK(abbe_mesh_make(n + 1, f + 1, false, &m, &error));
   memcpy(m.position, whole.position, n * sizeof *m.position);
@@ -88,16 +87,14 @@ TEST(what_is_dropped_has_no_size) {
   m.position[n][0] = 40;
   for (uint32_t k = 0; k < 2; k++) m.face[f][k] = whole.face[0][k];
   m.face[f][2] = (uint32_t)n;
-  abbe_mesh_free(&whole);
   abbe_object_surface s = request();
   s.repair = true;
   s.fit = 0.02;
   s.centred = true;
-  abbe_scene scene = place(m, &s, true);
+  OWNED(abbe_scene, scene) = place(m, &s, true);
   assert_contains(scene.object[0].fixes, "1 sheet that hung on the body");
   assert_near(scene.object[0].max[0] - scene.object[0].min[0], 0.02, 1e-15);
   assert_near(scene.object[0].max[0], 0.01, 1e-15);
-  abbe_scene_free(&scene);
 }
 
 /* Its vertices do not reach as far as the ball does. */
@@ -106,11 +103,10 @@ TEST(a_ball_is_fitted_as_a_ball) {
   s.radius = 3;
   s.fit = 0.1;
   s.centred = true;
-  abbe_scene scene = place(sphere(3, 1), &s, true);
+  OWNED(abbe_scene, scene) = place(sphere(3, 1), &s, true);
   assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_SPHERE);
   assert_near(scene.object[0].exact.radius, 0.05, 1e-15);
   assert_near(scene.object[0].exact.centre[1], 0, 1e-15);
-  abbe_scene_free(&scene);
 }
 
 TEST(what_has_no_size_cannot_be_fitted) {
@@ -119,10 +115,9 @@ TEST(what_has_no_size_cannot_be_fitted) {
   m.face[0][1] = 1, m.face[0][2] = 2;
   abbe_object_surface s = request();
   s.fit = 1;
-  abbe_scene scene = scene_of(m, NULL);
+  OWNED(abbe_scene, scene) = scene_of(m, NULL);
   REFUSED(ABBE_GEOMETRY, "no size",
           abbe_object_place(&s, scene.object, ROOM, &scene.object_count, &error));
-  abbe_scene_free(&scene);
 }
 
 /* A body with a hollow, and a second body that crosses it, turned and made smaller with it. */
@@ -133,7 +128,7 @@ TEST(shells_that_cross_become_objects) {
   abbe_object_surface s = request();
   s.fit = 0.12;
   s.centred = true;
-  abbe_scene scene = place(test_boxes(box, 3), &s, true);
+  OWNED(abbe_scene, scene) = place(test_boxes(box, 3), &s, true);
   assert_int_equal(scene.object_count, 2);
   assert_string_equal(scene.object[0].name, "thing");
   assert_string_equal(scene.object[1].name, "thing (part 2 of 2)");
@@ -150,30 +145,27 @@ TEST(shells_that_cross_become_objects) {
   const double in_hollow[3] = {-0.02, 0.0, 0.0}, in_glass[3] = {-0.055, 0, 0};
   assert_false(abbe_mesh_contains(&scene.object[0].mesh, in_hollow));
   assert_true(abbe_mesh_contains(&scene.object[0].mesh, in_glass));
-  abbe_scene_free(&scene);
 }
 
 /* Flush below and back to back: the second reaches into the first and past it below, a little. */
 TEST(solids_that_lie_on_one_another_overlap) {
   const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 0.2, 0}, {2, 0.8, 0.5}, false}};
   abbe_object_surface s = request();
-  abbe_scene scene = place(test_boxes(box, 2), &s, true);
+  OWNED(abbe_scene, scene) = place(test_boxes(box, 2), &s, true);
   assert_int_equal(scene.object_count, 2);
   const double *a = scene.object[0].min, *b = scene.object[1].min;
   assert_true(b[0] < scene.object[0].max[0] - 1e-5 && b[0] > scene.object[0].max[0] - 1e-4);
   assert_true(b[2] < a[2] - 1e-5 && b[2] > a[2] - 1e-4);
   assert_int_equal(scene.object[1].exact.count, 6);
-  abbe_scene_free(&scene);
 }
 
 TEST(more_parts_than_there_is_room_for_are_refused) {
   const test_box box[2] = {{{0, 0, 0}, {2, 2, 2}, false}, {{1, 0.5, 0.7}, {4, 1.5, 1.5}, false}};
   const abbe_object_surface s = request();
-  abbe_scene scene = scene_of(test_boxes(box, 2), &glass);
+  OWNED(abbe_scene, scene) = scene_of(test_boxes(box, 2), &glass);
   REFUSED(ABBE_UNSUPPORTED, "room for 1 object",
           abbe_object_place(&s, scene.object, 1, &scene.object_count, &error));
   assert_int_equal(scene.object_count, 1);
-  abbe_scene_free(&scene);
 }
 
 static bool is_flat(const abbe_mesh *m) {
@@ -196,7 +188,7 @@ TEST(a_stone_is_cut_and_a_ball_is_round) {
   abbe_mesh m;
   /* a stone: its facets meet at less than a crease, but at its girdle */
   OK(abbe_shape_gem(16, 1, 0.6, 0.25, 0.5, &m, &error));
-  abbe_scene scene = chosen(m, false);
+  OWNED(abbe_scene, scene) = chosen(m, false);
   assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_CONVEX);
   assert_true(is_flat(&scene.object[0].mesh));
   abbe_scene_free(&scene);
@@ -211,7 +203,6 @@ TEST(a_stone_is_cut_and_a_ball_is_round) {
   OK(abbe_shape_box(size, &m, &error));
   scene = chosen(m, true);
   assert_int_equal(scene.object[0].exact.convex.verdict, ABBE_CONVEX_ROUNDED);
-  abbe_scene_free(&scene);
 }
 
 enum { CUTS = 4 };
@@ -249,7 +240,7 @@ TEST(triangles_of_a_rough_solid_lie_in_its_planes) {
   static const double off[] = {0, 1e-6, 8e-6};
   for (size_t i = 0; i < sizeof off / sizeof *off; i++) {
     abbe_object_surface s = request();
-    abbe_scene scene = place(rough_cube(off[i]), &s, true);
+    OWNED(abbe_scene, scene) = place(rough_cube(off[i]), &s, true);
     const abbe_object *o = &scene.object[0];
     char why[160];
     abbe_convex_reason(&o->exact.convex, why, sizeof why);
@@ -269,6 +260,5 @@ TEST(triangles_of_a_rough_solid_lie_in_its_planes) {
       assert_near(nearest, 0, 1e-12);
     }
     assert_true(off[i] == 0 || o->exact.convex.tolerance > 2e-6);
-    abbe_scene_free(&scene);
   }
 }

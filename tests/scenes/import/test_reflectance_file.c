@@ -16,13 +16,12 @@ static void load_plate(const char *format, const char *path, abbe_scene *scene) 
   char text[1024], plate[256];
   snprintf(plate, sizeof plate, format, path);
   snprintf(text, sizeof text, PLATE("%s"), plate);
-  load_text(text, scene);
+  *scene = scene_of(text);
 }
 
 TEST(a_file_gives_a_spectrum) {
   const char *path = write_table("nm;leaf;stone\n400;0,1;0,5\n500;0,3;0,5\n700;0,2;0,5\n");
-  OWNED(abbe_scene, scene);
-  load_plate("{spectrum: %s, column: leaf}", path, &scene);
+  FILLED(abbe_scene, scene, load_plate("{spectrum: %s, column: leaf}", path, &scene));
   const abbe_object *o = &scene.object[0];
   assert_int_equal(abbe_object_kind_of(o), ABBE_OBJECT_RECEIVER);
   assert_near(abbe_spectrum_at(o->spectrum, 450), 0.2, 1e-12);
@@ -38,8 +37,7 @@ TEST(a_file_gives_a_spectrum) {
 }
 
 TEST(a_patch_gives_a_spectrum) {
-  OWNED(abbe_scene, scene);
-  load_text(PLATE("{patch: red}"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(PLATE("{patch: red}"));
   const abbe_object *o = &scene.object[0];
   assert_null(o->spectrum_path);
   assert_true(abbe_spectrum_at(o->spectrum, 650) > 10 * abbe_spectrum_at(o->spectrum, 500));

@@ -11,8 +11,7 @@
 
 /* Of N-BK7 as [SchottTIE19]'s model has it: what renderer, tracer and exports ask for. */
 TEST(glass_is_as_warm_as_the_scene) {
-  OWNED(abbe_scene, scene);
-  load_text(WARM("n-bk7") BRICK("air"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(WARM("n-bk7") BRICK("air"));
   double n = 0;
   OK(abbe_material_n(scene.object[1].material, LINE_D_NM, &n, &error));
   assert_near(n, 1.5172435, 5e-8);
@@ -25,11 +24,10 @@ TEST(glass_is_as_warm_as_the_scene) {
 }
 
 TEST(metals_are_said_to_stay_as_they_were_measured) {
-  OWNED(abbe_scene, scene);
   abbe_scene_doubts doubts;
-  load_text(WARM("n-bk7") "- {name: coin, shape: box, size: [0.1, 0.1, 0.01], transform: "
-                          "[{translate: [0.4, 0, 0.2]}], mirror: gold}\n",
-            &scene);
+  OWNED(abbe_scene, scene) =
+      scene_of(WARM("n-bk7") "- {name: coin, shape: box, size: [0.1, 0.1, 0.01], transform: "
+                             "[{translate: [0.4, 0, 0.2]}], mirror: gold}\n");
   abbe_scene_doubt(&scene, &doubts);
   assert_int_equal(doubts.count, 1);
   assert_contains(doubts.text[0], "'coin' has n and k of gold as they were measured, not at 40 C");
@@ -39,8 +37,8 @@ TEST(what_has_no_index_there_is_refused) {
   const struct {
     const char *text, *words;
   } refused[] = {
-      {WARM("diamond"), "x.yaml:1: 'temperature': diamond has no index at 40 C: its record gives "
-                        "no dn/dT"},
+      {WARM("diamond"),
+       "x.yaml:1: 'temperature': diamond has no index at 40 C: its record gives no dn/dT"},
       {"temperature: 293\n", "x.yaml:1: 'temperature: 293' is not in the range from -250 to 200"},
       {"pressure: 101325\n", "x.yaml:1: 'pressure: 101325' is not in the range from 0 to 100"}};
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {

@@ -7,10 +7,8 @@
 #include "spectral/optics.h"
 
 static abbe_scene load(const char *name) {
-  char path[512];
   abbe_scene scene;
-  snprintf(path, sizeof path, "%s/scenes/%s.yaml", ABBE_SOURCE_DIR, name);
-  OK(abbe_scene_load(path, NULL, &scene, &error));
+  OK(abbe_scene_load(printed("%s/scenes/%s.yaml", ABBE_SOURCE_DIR, name), NULL, &scene, &error));
   return scene;
 }
 
@@ -74,7 +72,7 @@ TEST(cornell_boxes_face_inwards_and_are_red_on_the_left) {
   static const char *const walls[] = {"floor", "back wall", "left wall", "right wall", "ceiling"};
   const double inside[3] = {0, 0, 0.15};
   for (size_t i = 0; i < 4; i++) {
-    abbe_scene scene = load(names[i]);
+    OWNED(abbe_scene, scene) = load(names[i]);
     for (size_t w = 0; w < 5; w++) {
       const abbe_object *wall = find(&scene, walls[w]);
       assert_int_equal(wall->exact.kind, ABBE_EXACT_PARALLELOGRAMS);
@@ -88,13 +86,12 @@ TEST(cornell_boxes_face_inwards_and_are_red_on_the_left) {
     }
     const abbe_object *left = find(&scene, "left wall");
     assert_true(left->max[0] < -0.14 && left->reflectance[0] > 5 * left->reflectance[1]);
-    abbe_scene_free(&scene);
   }
 }
 
 /* A prism's ray in the plane of its base: [BornWolf1999]. */
 TEST(the_spectrum_of_the_prism_falls_on_the_wall) {
-  abbe_scene scene = load("prism");
+  OWNED(abbe_scene, scene) = load("prism");
   const abbe_object *prism = refractor(&scene), *wall = find(&scene, "wall");
   const double wavelengths[3] = {400, 588, 700};
   double at[3] = {0};
@@ -123,12 +120,11 @@ TEST(the_spectrum_of_the_prism_falls_on_the_wall) {
   }
   /* violet is bent more: it lands nearer to the slit; the spectrum is centimetres wide */
   assert_true(at[0] < at[1] && at[1] < at[2] && at[2] - at[0] > 0.03);
-  abbe_scene_free(&scene);
 }
 
 /* The outermost ray of order one: b from 0 to 1, exit angle 4 asin(b/n) - 2 asin(b). */
 TEST(the_rainbow_falls_on_the_screen) {
-  abbe_scene scene = load("rainbow");
+  OWNED(abbe_scene, scene) = load("rainbow");
   const abbe_object *drop = refractor(&scene), *above = find(&scene, "screen, above the hole");
   const double distance = above->min[0] - drop->exact.centre[0], r = drop->exact.radius;
   double angle[2] = {0};
@@ -146,18 +142,16 @@ TEST(the_rainbow_falls_on_the_screen) {
   const double to_drop = scene.light[0].position[0] - drop->exact.centre[0];
   assert_true(to_drop * sin(scene.light[0].cone_rad) > r);
   assert_true((to_drop - distance) * tan(scene.light[0].cone_rad) < above->min[2] - 0.4);
-  abbe_scene_free(&scene);
 }
 
 TEST(the_glass_stands_on_textured_wood) {
-  abbe_scene scene = load("glass");
+  OWNED(abbe_scene, scene) = load("glass");
   const abbe_object *table = find(&scene, "table");
   assert_int_equal(table->texture.width, 256);
   assert_true(table->texture_repeat[0] == 3);
   for (size_t i = 0; i < 256 * 256 * 3; i++)
     assert_true(table->texture.data[i] >= 0 && table->texture.data[i] < 0.7f);
   assert_true(refractor(&scene)->min[2] > 0);
-  abbe_scene_free(&scene);
 }
 
 TEST(options_choose_another_table) {
@@ -359,10 +353,9 @@ TEST(bad_scenes_are_explained) {
       {"nothing_in_view", ABBE_UNSUPPORTED, "in the camera's view"},
   };
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-    char path[512];
     abbe_scene scene;
     abbe_error error = {0};
-    snprintf(path, sizeof path, "%s/tests/bad/scene_%s.yaml", ABBE_SOURCE_DIR, bad[i].name);
+    const char *path = printed("%s/tests/bad/scene_%s.yaml", ABBE_SOURCE_DIR, bad[i].name);
     const abbe_result result = abbe_scene_load(path, NULL, &scene, &error);
     if (result != bad[i].result || error.code != result || !strstr(error.text, bad[i].says) ||
         (!strstr(error.text, "scene_") && !strstr(error.text, "no_such")))
@@ -375,7 +368,7 @@ TEST(bad_scenes_are_explained) {
 
 /* The example of docs/scene-files.md, between its first pair of fences. */
 TEST(the_documented_scene_loads) {
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size;
   OK(abbe_file_read(ABBE_SOURCE_DIR "/docs/scene-files.md", 1 << 20, &text, &size, &error));
   char *begin = strstr(text, "```yaml\n");
@@ -384,7 +377,6 @@ TEST(the_documented_scene_loads) {
   char *end = strstr(begin, "```");
   assert_non_null(end);
   OK(abbe_file_write("t_documented.yaml", begin, (size_t)(end - begin), &error));
-  free(text);
   abbe_scene scene;
   OK(abbe_scene_load("t_documented.yaml", NULL, &scene, &error));
   assert_string_equal(scene.object[0].material->name, "sapphire");
@@ -400,7 +392,7 @@ TEST(a_missing_file_is_named) {
 
 /* Text says what its file says; without a file the name stands in the messages. */
 TEST(text_is_read_like_a_file) {
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size = 0;
   abbe_scene parsed, loaded = load("prism");
   const char *path = ABBE_SOURCE_DIR "/scenes/prism.yaml";
@@ -411,7 +403,6 @@ TEST(text_is_read_like_a_file) {
   assert_memory_equal(parsed.object[0].max, loaded.object[0].max, sizeof loaded.object[0].max);
   abbe_scene_free(&parsed);
   abbe_scene_free(&loaded);
-  free(text);
   REFUSED(ABBE_SCHEMA,
           "words:1:", abbe_scene_parse("camera: 7\n", 10, "words", NULL, &parsed, &error));
   assert_null(parsed.object);
@@ -422,7 +413,8 @@ TEST(texts_differ_where_something_was_set) {
   static const char path[] = ABBE_SOURCE_DIR "/scenes/gem.yaml";
   const char *set = "lights.lamp.cone=40";
   const abbe_scene_options options = {.set = &set, .set_count = 1, .stone = "diamond"};
-  char *plain, *changed;
+  FREED char *plain = NULL;
+  char *changed;
   size_t plain_size, changed_size;
   OK(abbe_scene_text(path, NULL, &plain, &plain_size, &error));
   OK(abbe_scene_text(path, &options, &changed, &changed_size, &error));
@@ -434,7 +426,6 @@ TEST(texts_differ_where_something_was_set) {
   assert_memory_equal(plain + after, changed + after, (size_t)(stone - plain) - after);
   assert_non_null(strstr(changed, "material: diamond\n"));
   assert_int_equal(changed_size, plain_size + strlen("diamond") - strlen("n-sf11"));
-  free(plain);
   free(changed);
   set = "lights.lamb.cone=40";
   assert_int_equal(abbe_scene_text(path, &options, &changed, &changed_size, NULL),

@@ -11,11 +11,10 @@ TEST(reading_ends_when_it_is_told_to) {
     size_t least; /* questions: of a large mesh, of surroundings and a cut stone */
   } scenes[] = {{"bunny", 60}, {"stone", 60}};
   for (size_t i = 0; i < 2; i++) {
-    char path[512];
     OWNED(abbe_scene, scene) = {0};
     abbe_result result = ABBE_CANCELLED;
     patience p = {0};
-    snprintf(path, sizeof path, "%s/scenes/%s.yaml", ABBE_SOURCE_DIR, scenes[i].name);
+    const char *path = printed("%s/scenes/%s.yaml", ABBE_SOURCE_DIR, scenes[i].name);
     for (size_t most = 0; result == ABBE_CANCELLED; most = 4 * most + 3) {
       abbe_watch watch = {patience_lasts, &p, false};
       p = (patience){.most = most};

@@ -24,10 +24,9 @@ TEST(numbers_go_between_keyframes) {
   } rows[] = {{NULL, 1},     {"time=-5", 1}, {"time=0", 1}, {"time=1", 2},  {"time=1.5", 3},
               {"time=2", 4}, {"time=3", 3},  {"time=4", 2}, {"time=99", 2}, {"time=2.25", 3.75}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    abbe_scene scene =
+    OWNED(abbe_scene, scene) =
         load_at(FRONT LAMP("{keyframes: [[0, 1], [1, 2], [2, 4], [4, 2]]}") FLOOR, rows[i].time);
     assert_near(scene.light[0].power, rows[i].is, 1e-12);
-    abbe_scene_free(&scene);
   }
 }
 
@@ -40,7 +39,7 @@ TEST(all_kinds_of_values_move) {
       "- name: ball\n  shape: sphere\n  radius: 0.1\n  material: water\n  transform:\n"
       "    - translate: {keyframes: [[0, [1, 0, 1]], [5, [0, 1, 1]]]}\n"
       "    - rotate: {axis: [0, 0, 1], angle: {keyframes: [[0, 0], [5, 180]]}}\n";
-  abbe_scene scene = load_at(text, NULL);
+  OWNED(abbe_scene, scene) = load_at(text, NULL);
   assert_near(scene.time, 2.5, 0);
   assert_near(scene.camera.eye[1], -1.5, 1e-12);
   assert_near(scene.camera.eye[2], 2, 1e-12);
@@ -48,7 +47,6 @@ TEST(all_kinds_of_values_move) {
   assert_near(scene.object[1].exact.centre[0], -0.5, 1e-12);
   assert_near(scene.object[1].exact.centre[1], 0.5, 1e-12);
   assert_near(scene.object[1].exact.centre[2], 1, 1e-12);
-  abbe_scene_free(&scene);
 }
 
 /* At the scene's time the surface is that of the shape at that time. */
@@ -60,16 +58,10 @@ TEST(water_is_at_its_time) {
   const abbe_water_wave wave = {0.005, 0.3, 30 * 3.14159265358979323846 / 180,
                                 20 * 3.14159265358979323846 / 180};
   const abbe_water_drop drop = {{0.1, 0}, 0.1, 0.002, 0.06};
-  const abbe_water water = {.size = {1, 0.5, 0.1},
-                            .cells = {40, 20},
-                            .time = 0.75,
-                            .wave_count = 1,
-                            .wave = &wave,
-                            .drop_count = 1,
-                            .drop = &drop};
-  OWNED(abbe_mesh, known);
-  OK(abbe_water_make(&water, &known, &error));
-  abbe_scene scene = load_at(text, "time=0.75");
+  const abbe_water water = FIELDS(.size = {1, 0.5, 0.1}, .cells = {40, 20}, .time = 0.75,
+                                  .wave_count = 1, .wave = &wave, .drop_count = 1, .drop = &drop);
+  MADE(abbe_mesh, known, abbe_water_make(&water, &known, &error));
+  OWNED(abbe_scene, scene) = load_at(text, "time=0.75");
   const abbe_mesh *seen = &scene.object[1].mesh;
   assert_null(scene.object[1].fixes);
   assert_int_equal(seen->vertex_count, known.vertex_count);
@@ -83,7 +75,6 @@ TEST(water_is_at_its_time) {
                   "- {name: pool, shape: water, size: [1, 0.5, 0.1], material: water}\n",
                   NULL);
   assert_int_equal(scene.object[1].exact.kind, ABBE_EXACT_CONVEX);
-  abbe_scene_free(&scene);
 }
 
 static void refuses(const char *text, const char *part, const char *line) {

@@ -9,8 +9,8 @@
   "0.2, radiance: 3}\n"
 
 TEST(one_point_is_the_middle) {
-  abbe_scene scene, lit;
-  load_text(CAMERA DISK FLOOR, &scene);
+  abbe_scene lit;
+  OWNED(abbe_scene, scene) = scene_of(CAMERA DISK FLOOR);
   assert_true(abbe_area_lights_any(&scene));
   OK(abbe_area_lights_add(&scene, 1, ABBE_SCENE_MAX_LIGHTS, &lit, &error));
   assert_false(abbe_area_lights_any(&lit));
@@ -18,7 +18,6 @@ TEST(one_point_is_the_middle) {
   assert_near(lit.light[0].power, 3 * ABBE_PI * 0.04, 1e-12);
   assert_memory_equal(lit.light[0].position, scene.light[0].position, sizeof(double[3]));
   free(lit.light);
-  abbe_scene_free(&scene);
 }
 
 /* Irradiance below its middle is pi L R^2 / (R^2 + h^2); on the floor beside it the points' means
@@ -27,9 +26,9 @@ TEST(points_shine_as_the_disk) {
   static const double within[] = {0.2, 0.05, 0.02};
   for (int i = 0; i < 3; i++) {
     const size_t points = (size_t)1 << 2 * i;
-    abbe_scene scene, lit;
+    abbe_scene lit;
     double sum = 0;
-    load_text(CAMERA DISK FLOOR, &scene);
+    OWNED(abbe_scene, scene) = scene_of(CAMERA DISK FLOOR);
     OK(abbe_area_lights_add(&scene, points, ABBE_SCENE_MAX_LIGHTS, &lit, &error));
     assert_int_equal(lit.light_count, points);
     for (size_t k = 0; k < points; k++) {
@@ -44,18 +43,16 @@ TEST(points_shine_as_the_disk) {
     }
     assert_near(sum / (ABBE_PI * 3 * 0.04 / (0.04 + 0.25)), 1, within[i]);
     free(lit.light);
-    abbe_scene_free(&scene);
   }
 }
 
 /* A rectangle of 0.4 x 0.1: of 8 points six stand in a row and a half; those that make even rows
  * do, in the middles of equal parts. */
 TEST(a_rectangle_is_a_grid) {
-  abbe_scene scene, lit;
-  load_text(CAMERA
-            "lights:\n- {name: panel, kind: rectangle, position: [0, 0, 0.5], direction: [0, "
-            "0, -1], width: 0.4, height: 0.1, radiance: 3}\n" FLOOR,
-            &scene);
+  abbe_scene lit;
+  OWNED(abbe_scene, scene) =
+      scene_of(CAMERA "lights:\n- {name: panel, kind: rectangle, position: [0, 0, 0.5], direction: "
+                      "[0, 0, -1], width: 0.4, height: 0.1, radiance: 3}\n" FLOOR);
   assert_near(abbe_light_area(&scene.light[0]), 0.04, 1e-12);
   OK(abbe_area_lights_add(&scene, 8, ABBE_SCENE_MAX_LIGHTS, &lit, &error));
   assert_int_equal(lit.light_count, 6); /* sqrt(8 x 4) is 6 columns */
@@ -73,16 +70,14 @@ TEST(a_rectangle_is_a_grid) {
   assert_int_equal(lit.light_count, 16); /* 8 columns, 2 rows */
   assert_near(fabs(lit.light[0].position[1]), 0.025, 1e-12);
   free(lit.light);
-  abbe_scene_free(&scene);
 }
 
 TEST(others_stay_and_room_is_kept) {
-  abbe_scene scene, lit;
-  load_text(CAMERA DISK
-            "- {name: second, kind: disk, position: [1, 0, 0.5], direction: [0, 0, -1], "
-            "radius: 0.2, radiance: 3}\n"
-            "- {name: lamp, kind: point, position: [0, 1, 0.5], intensity: 1}\n" FLOOR,
-            &scene);
+  abbe_scene lit;
+  OWNED(abbe_scene, scene) = scene_of(
+      CAMERA DISK "- {name: second, kind: disk, position: [1, 0, 0.5], direction: [0, 0, -1], "
+                  "radius: 0.2, radiance: 3}\n"
+                  "- {name: lamp, kind: point, position: [0, 1, 0.5], intensity: 1}\n" FLOOR);
   OK(abbe_area_lights_add(&scene, 16, 12, &lit, &error));
   assert_int_equal(lit.light_count, 11);
   assert_int_equal(lit.light[0].points, 5);
@@ -92,5 +87,4 @@ TEST(others_stay_and_room_is_kept) {
   OK(abbe_area_lights_add(&scene, 16, 1, &lit, &error));
   assert_int_equal(lit.light_count, 3);
   free(lit.light);
-  abbe_scene_free(&scene);
 }

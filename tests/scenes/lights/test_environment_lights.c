@@ -7,9 +7,7 @@
 #define PLAIN CAMERA FLOOR
 
 static void add(const char *environment, size_t count, abbe_scene *scene, abbe_scene *out) {
-  char text[2048];
-  snprintf(text, sizeof text, PLAIN "environment: %s\n", environment);
-  load_text(text, scene);
+  *scene = scene_of(printed(PLAIN "environment: %s\n", environment));
   const abbe_environment_lights_desc desc = {.count = count, .min_nm = 380, .max_nm = 780};
   OK(abbe_environment_lights_add(scene, &desc, NULL, out, &error));
 }
@@ -73,11 +71,11 @@ TEST(what_is_left_and_the_lights_are_all) {
   static const double luminance[3] = {0.2126390058715104, 0.7151686787677559, 0.0721923153607337};
   for (size_t count = 0; count <= 2; count++) {
     abbe_scene scene, lit;
-    abbe_radiance_map left;
     add(STUDIO, count, &scene, &lit);
     assert_int_equal(lit.environment_lights, count);
     const abbe_environment *e = scene.environment;
-    OK(abbe_environment_lights_leave(e, lit.environment_lights, &left, &error));
+    MADE(abbe_radiance_map, left,
+         abbe_environment_lights_leave(e, lit.environment_lights, &left, &error));
     double flux[3] = {0, 0, 0};
     for (size_t i = 0; i < left.width * left.height; i++) {
       double d[3], y = 0;
@@ -94,7 +92,6 @@ TEST(what_is_left_and_the_lights_are_all) {
     for (size_t i = 0; i < lit.environment_lights; i++)
       for (int k = 0; k < 3; k++) flux[k] += lit.light[i].power * lit.light[i].direction[k];
     for (int k = 0; k < 3; k++) assert_near(flux[k], 0, 1e-4);
-    abbe_radiance_map_free(&left);
     drop(&scene, &lit);
   }
 }
@@ -165,21 +162,21 @@ TEST(a_lamp_at_the_zenith_is_no_brighter) {
 }
 
 TEST(own_lights_stay_and_leave_room) {
-  abbe_scene scene, lit;
+  abbe_scene lit;
   char text[4096] = CAMERA POINT_LIGHT FLOOR "environment: {softboxes: [";
   for (int i = 0; i < 20; i++)
     snprintf(text + strlen(text), sizeof text - strlen(text),
              "{elevation: 20, azimuth: %d, radius: 2, radiance: 9},", 18 * i);
   strcat(text, "]}\n");
   abbe_environment_lights_desc desc = {.count = 99, .min_nm = 380, .max_nm = 780};
-  load_text(text, &scene);
+  abbe_scene scene = scene_of(text);
   OK(abbe_environment_lights_add(&scene, &desc, NULL, &lit, &error));
   assert_int_equal(lit.light_count, ABBE_SCENE_MAX_LIGHTS);
   assert_int_equal(lit.environment_lights, ABBE_SCENE_MAX_LIGHTS - 1);
   assert_string_equal(lit.light[0].name, "lamp");
   assert_string_equal(lit.light[1].name, "environment 1");
   drop(&scene, &lit);
-  load_text(CAMERA POINT_LIGHT FLOOR, &scene);
+  scene = scene_of(CAMERA POINT_LIGHT FLOOR);
   desc.count = 4;
   OK(abbe_environment_lights_add(&scene, &desc, NULL, &lit, &error));
   assert_int_equal(lit.light_count, 1);

@@ -4,13 +4,12 @@
 #include "scenes/medium/medium.h"
 
 TEST(mist_and_murky_glass_are_read) {
-  OWNED(abbe_scene, scene);
-  load_text(CAMERA POINT_LIGHT
-            "medium: {scattering: [[400, 4], [500, 2]], absorption: 0.5, g: -0.3,\n"
-            "         box: [[-1, -2, -3], [1, 2, 3]]}\n" FLOOR
-            "- {name: ball, shape: sphere, radius: 0.08, material: flat, medium: {scattering: 7}}\n"
-            "- {name: clear, shape: sphere, radius: 0.01, material: flat}\n",
-            &scene);
+  OWNED(abbe_scene, scene) = scene_of(
+      CAMERA POINT_LIGHT
+      "medium: {scattering: [[400, 4], [500, 2]], absorption: 0.5, g: -0.3,\n"
+      "         box: [[-1, -2, -3], [1, 2, 3]]}\n" FLOOR
+      "- {name: ball, shape: sphere, radius: 0.08, material: flat, medium: {scattering: 7}}\n"
+      "- {name: clear, shape: sphere, radius: 0.01, material: flat}\n");
   assert_true(abbe_scene_is_hazy(&scene));
   const abbe_medium *m = scene.medium;
   assert_near(abbe_medium_scattering(m, 450), 3, 1e-12);
@@ -25,17 +24,16 @@ TEST(mist_and_murky_glass_are_read) {
   assert_null(scene.object[1].medium->absorption);
   assert_null(scene.object[2].medium);
   abbe_scene_free(&scene);
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+  scene = scene_of(CAMERA POINT_LIGHT FLOOR BALL("flat"));
   assert_false(abbe_scene_is_hazy(&scene));
 }
 
 static void refuses(const char *air, const char *object, const char *says) {
-  char text[2048];
   abbe_scene scene;
   abbe_error error = {0};
-  snprintf(text, sizeof text,
-           "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT "%s" FLOOR "%s", air,
-           object);
+  const char *text =
+      printed("camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT "%s" FLOOR "%s",
+              air, object);
   if (abbe_scene_parse(text, strlen(text), "text", NULL, &scene, &error) == ABBE_OK)
     fail_msg("%s%s was read", air, object);
   if (strstr(error.text, says) == NULL) fail_msg("%s%s: %s", air, object, error.text);
@@ -71,11 +69,11 @@ TEST(bad_insides_are_refused) {
        "no 'material'"},
       {"- {name: a, shape: sphere, radius: 0.08, material: calcite, medium: {scattering: 7}}\n",
        "crystal"},
-      {"- {name: a, shape: sphere, radius: 0.08, material: n-bk7, medium: {scattering: 7,"
-       " absorption: 1}}\n",
+      {"- {name: a, shape: sphere, radius: 0.08, material: n-bk7, medium: {scattering: 7, "
+       "absorption: 1}}\n",
        "its material's"},
-      {"- {name: a, shape: sphere, radius: 0.08, material: n-bk7, medium: {scattering: 7,"
-       " box: [[0, 0, 0], [1, 1, 1]]}}\n",
+      {"- {name: a, shape: sphere, radius: 0.08, material: n-bk7, medium: {scattering: 7, box: "
+       "[[0, 0, 0], [1, 1, 1]]}}\n",
        "leave out its 'box'"},
       {"- {name: a, shape: sphere, radius: 0.08, material: n-bk7, medium: {g: 0.5}}\n",
        "does nothing"}};

@@ -19,7 +19,7 @@ static void finish(soup *s) {
   OK(abbe_bvh_make((const double(*)[9])s->triangle, s->count, &s->h, &error));
 }
 
-static void drop(soup *s) {
+static void soup_free(soup *s) {
   abbe_bvh_free(&s->h);
   free(s->triangle);
 }
@@ -39,10 +39,8 @@ static void make_soup(size_t count, double size, soup *s) {
 }
 
 static void make_ring(soup *s) {
-  abbe_mesh mesh = {0};
-  OK(abbe_shape_ring(0.08, 0.02, 64, 32, &mesh, &error));
+  MADE(abbe_mesh, mesh, abbe_shape_ring(0.08, 0.02, 64, 32, &mesh, &error));
   *s = (soup){.count = mesh.face_count, .size = 0.1, .triangle = abbe_bvh_triangles(&mesh)};
-  abbe_mesh_free(&mesh);
   finish(s);
 }
 
@@ -96,23 +94,21 @@ static void compare(const soup *s, size_t rays) {
 GROUP(make_context, free_context);
 
 TEST(nearest_of_all_triangles) {
-  soup s;
+  OWNED(soup, s) = {0};
   static const size_t counts[] = {1, 2, 5, 300, 3000};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
     make_soup(counts[i], i % 2 ? 1 : 1e4, &s);
     if (counts[i] >= 300) compare(&s, 1000);
     assert_true(s.h.node_count < 2 * counts[i] && s.h.depth <= ABBE_BVH_MAX_DEPTH);
-    drop(&s);
+    soup_free(&s);
   }
   make_ring(&s);
   compare(&s, 1000);
-  drop(&s);
 }
 
 /* Every triangle is in one leaf, and every box holds what is below it. */
 TEST(boxes_hold_their_triangles) {
-  soup s;
-  make_soup(1000, 1, &s);
+  FILLED(soup, s, make_soup(1000, 1, &s));
   size_t seen = 0;
   for (size_t i = 0; i < s.h.node_count; i++) {
     const abbe_bvh_node *n = &s.h.node[i];
@@ -129,14 +125,12 @@ TEST(boxes_hold_their_triangles) {
       }
   }
   assert_int_equal(seen, s.count);
-  drop(&s);
 }
 
 /* What rays pay: the boxes' surfaces by the root's. Where most of a node is empty it is cut there.
  */
 TEST(boxes_are_tight) {
-  soup s;
-  make_ring(&s);
+  FILLED(soup, s, make_ring(&s));
   double area = 0, whole = 0;
   for (size_t i = 0; i < s.h.node_count; i++) {
     double side[3];
@@ -146,7 +140,7 @@ TEST(boxes_are_tight) {
   }
   print_message("ring: %.1f areas of the root\n", area / whole);
   assert_true(area < 30 * whole);
-  drop(&s);
+  soup_free(&s);
   s = (soup){.count = 64, .triangle = calloc(64, sizeof *s.triangle)};
   uint64_t random = 5;
   for (size_t i = 0; i < s.count; i++)
@@ -155,7 +149,6 @@ TEST(boxes_are_tight) {
   finish(&s);
   const abbe_bvh_node *child = s.h.node + s.h.node->first;
   assert_true(child[0].max[0] < child[1].min[0] || child[1].max[0] < child[0].min[0]);
-  drop(&s);
 }
 
 TEST(equal_triangles_end_in_leaves) {
@@ -163,14 +156,13 @@ TEST(equal_triangles_end_in_leaves) {
   for (size_t i = 0; i < s.count; i++) s.triangle[i][3] = s.triangle[i][7] = 1;
   finish(&s);
   assert_true(s.h.depth <= ABBE_BVH_MAX_DEPTH);
-  drop(&s);
+  soup_free(&s);
   assert_int_equal(abbe_bvh_make(NULL, 0, &s.h, NULL), ABBE_GEOMETRY);
 }
 
 /* Whoever stops it is not asked again, whenever that is; who does not changes nothing. */
 TEST(it_ends_when_it_is_told_to) {
-  soup s;
-  make_soup(100000, 1, &s);
+  FILLED(soup, s, make_soup(100000, 1, &s));
   patience p = {.most = SIZE_MAX};
   abbe_watch watch = {patience_lasts, &p, false};
   abbe_bvh h;
@@ -196,7 +188,6 @@ TEST(it_ends_when_it_is_told_to) {
   assert_int_equal(p.asked, 2);
   abbe_watch_set(NULL);
   free(texel);
-  drop(&s);
 }
 
 static float float_of(uint32_t bits) {
@@ -257,7 +248,7 @@ TEST(packed_nodes_leave_nothing_out) {
     print_message("%zu of %zu left out\n", left_out, seen);
     if (which == 1) assert_true(left_out > 0.4 * (double)seen);
     free(texel);
-    drop(&s[which]);
+    soup_free(&s[which]);
   }
 }
 
@@ -285,7 +276,6 @@ TEST(the_shaders_find_the_same) {
   make_soup(3000, 1, &s[0]);
   make_ring(&s[1]);
   for (int which = 0; which < 2; which++) {
-    char text[512];
     uint64_t random = 11;
     size_t odd = 0, hits = 0;
     for (size_t i = 0; i < RAYS; i++) {
@@ -298,15 +288,16 @@ TEST(the_shaders_find_the_same) {
       in[i][3] = (float)((int)(i % 3) - 1);
     }
     upload(&s[which]);
-    snprintf(text, sizeof text,
-             "#define HIERARCHY_STACK %zu\n#include \"hierarchy.glsl\"\n"
-             "vec4 f(vec4 a, vec4 b) {\n"
-             "  TriangleHit h, any;\n  h.t = any.t = 1e30;\n"
-             "  bool met = hierarchy_hit(0, a.xyz, b.xyz, a.w, 0.0, false, h);\n"
-             "  bool some = hierarchy_hit(0, a.xyz, b.xyz, a.w, 0.0, true, any);\n"
-             "  return met != some ? vec4(-2) : met ? vec4(h.t, h.u, h.v, 1) : vec4(-1);\n}\n",
-             s[which].h.depth + 1);
-    glsl_evaluate(abbe_context_gl(context), text, (const float(*)[8])in, RAYS, out);
+    glsl_evaluate(
+        abbe_context_gl(context),
+        printed("#define HIERARCHY_STACK %zu\n#include \"hierarchy.glsl\"\n"
+                "vec4 f(vec4 a, vec4 b) {\n"
+                "  TriangleHit h, any;\n  h.t = any.t = 1e30;\n"
+                "  bool met = hierarchy_hit(0, a.xyz, b.xyz, a.w, 0.0, false, h);\n"
+                "  bool some = hierarchy_hit(0, a.xyz, b.xyz, a.w, 0.0, true, any);\n"
+                "  return met != some ? vec4(-2) : met ? vec4(h.t, h.u, h.v, 1) : vec4(-1);\n}\n",
+                s[which].h.depth + 1),
+        (const float(*)[8])in, RAYS, out);
     for (size_t i = 0; i < RAYS; i++) {
       double o[3], d[3];
       abbe_bvh_hit hit;
@@ -325,15 +316,14 @@ TEST(the_shaders_find_the_same) {
     if (odd * 200 >= RAYS) print_error("%zu of %d rays differ\n", odd, RAYS);
     assert_true(odd * 200 < RAYS);
   }
-  drop(&s[0]);
-  drop(&s[1]);
+  soup_free(&s[0]);
+  soup_free(&s[1]);
 }
 
 /* A box has six, a ring one; a box without normals that break, one. */
 TEST(parts_end_where_normals_break) {
-  OWNED(abbe_mesh, mesh) = {0};
   uint32_t group[8192];
-  OK(abbe_shape_box((double[3]){1, 2, 3}, &mesh, &error));
+  MADE(abbe_mesh, mesh, abbe_shape_box((double[3]){1, 2, 3}, &mesh, &error));
   assert_int_equal(abbe_bvh_parts(&mesh, group), 6);
   for (size_t i = 0; i < mesh.face_count; i++)
     for (size_t k = 0; k < mesh.face_count; k++) {

@@ -16,7 +16,7 @@ static void make_few(coarse *c) {
   OK(abbe_coarse_mesh_make(&c->whole, &c->few.face, &c->few.face_count, &error));
 }
 
-static void drop(coarse *c) {
+static void coarse_free(coarse *c) {
   free(c->few.face);
   abbe_mesh_free(&c->whole);
 }
@@ -68,10 +68,10 @@ static void assert_upright(const abbe_mesh *mesh) {
 
 /* A shell whose wall is a tenth of a cell: its sides stay apart, and each is whole. */
 TEST(sides_of_a_thin_wall_stay_apart) {
-  coarse c;
+  OWNED(coarse, c) = {0};
   static const double thin = 0.998;
-  abbe_mesh w, both;
-  OK(abbe_shape_sphere(0.5, 6, &w, &error)); /* 81,920 faces */
+  abbe_mesh both;
+  MADE(abbe_mesh, w, abbe_shape_sphere(0.5, 6, &w, &error)); /* 81,920 faces */
   OK(abbe_mesh_make(2 * w.vertex_count, 2 * w.face_count, false, &both, &error));
   for (size_t v = 0; v < both.vertex_count; v++)
     for (int k = 0; k < 3; k++) {
@@ -86,7 +86,6 @@ TEST(sides_of_a_thin_wall_stay_apart) {
       const size_t own = inner ? 2 - k : k, first = inner ? w.vertex_count : 0;
       both.face[f][k] = (uint32_t)(w.face[f % w.face_count][own] + first);
     }
-  abbe_mesh_free(&w);
   c.whole = both;
   make_few(&c);
   assert_int_in_range(c.few.face_count, ABBE_COARSE_MESH_FACES / 2, 3 * ABBE_COARSE_MESH_FACES / 2);
@@ -97,7 +96,6 @@ TEST(sides_of_a_thin_wall_stay_apart) {
   assert_upright(&c.few);
   assert_all_around(&c.few, false, 0.5);
   assert_all_around(&c.few, true, 0.5 * thin);
-  drop(&c);
 }
 
 /* How far off the mesh is on a way from p; INFINITY: it is not met. */
@@ -128,8 +126,7 @@ TEST(seams_stay_closed) {
       .size = {2, 1.5, 0.6}, .cells = {240, 200}, .wave_count = 1, .wave = &wave};
   const double middle[3] = {0, 0, -0.3};
   uint64_t random = 3;
-  coarse c;
-  OK(abbe_water_make(&water, &c.whole, &error));
+  MADE(coarse, c, abbe_water_make(&water, &c.whole, &error));
   make_few(&c);
   assert_non_null(c.few.face);
   assert_int_in_range(c.few.face_count, ABBE_COARSE_MESH_FACES / 2, 3 * ABBE_COARSE_MESH_FACES / 2);
@@ -147,24 +144,21 @@ TEST(seams_stay_closed) {
     const double few = distance_along(&c.few, middle, d), all = distance_along(&c.whole, middle, d);
     assert_near(few / all, 1, 0.02);
   }
-  drop(&c);
 }
 
 /* Few faces, faces of their own vertices, and no face at all: left as they are. */
 TEST(what_is_no_smooth_large_mesh_is_left) {
-  coarse c;
-  OK(abbe_shape_ring(0.08, 0.02, 64, 32, &c.whole, &error));
+  MADE(coarse, c, abbe_shape_ring(0.08, 0.02, 64, 32, &c.whole, &error));
   make_few(&c);
   assert_null(c.few.face);
-  drop(&c);
+  coarse_free(&c);
   OK(abbe_shape_sphere(0.5, 6, &c.whole, &error));
   OK(abbe_mesh_compute_normals(&c.whole, ABBE_NORMALS_FLAT, &error));
   make_few(&c);
   assert_null(c.few.face);
-  drop(&c);
+  coarse_free(&c);
   OK(abbe_shape_sphere(0.5, 6, &c.whole, &error));
   for (size_t v = 0; v < c.whole.vertex_count; v++) memset(c.whole.position[v], 0, 24);
   make_few(&c);
   assert_null(c.few.face);
-  drop(&c);
 }

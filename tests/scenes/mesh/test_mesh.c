@@ -17,7 +17,7 @@ TEST(make_checks_sizes) {
 }
 
 TEST(check_counts_what_is_wrong) {
-  abbe_mesh m = test_sphere(2);
+  OWNED(abbe_mesh, m) = test_sphere(2);
   m.face_count--;
   assert_int_equal(test_mesh_faults(&m).open_edges, 3);
   m.face_count++;
@@ -28,12 +28,11 @@ TEST(check_counts_what_is_wrong) {
   const abbe_mesh_report r = test_mesh_faults(&m);
   assert_true(r.open_edges == 3 || r.open_edges == 2);
   assert_true(r.crowded_edges >= 2);
-  abbe_mesh_free(&m);
 }
 
 /* Of a unit sphere, whose faces lie within a hundredth of it; many rays pass close by its edges. */
 TEST(points_within_a_sphere_are_inside) {
-  abbe_mesh m = test_sphere(4);
+  OWNED(abbe_mesh, m) = test_sphere(4);
   for (int i = 0; i < 400; i++) {
     const double z = (i + 0.5) / 200 - 1, turn = 2.399963 * i, r = sqrt(1 - z * z);
     const double away = i % 2 == 0 ? 0.985 : 1.001;
@@ -41,13 +40,11 @@ TEST(points_within_a_sphere_are_inside) {
     assert_true(abbe_mesh_contains(&m, p) == (i % 2 == 0));
   }
   assert_true(abbe_mesh_contains(&m, (const double[3]){0, 0, 0}));
-  abbe_mesh_free(&m);
 }
 
 TEST(subdivision_keeps_a_mesh_closed_and_smooth) {
-  OWNED(abbe_mesh, m);
   const double size[3] = {1, 1, 1};
-  OK(abbe_shape_box(size, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_box(size, &m, &error));
   OK(abbe_mesh_subdivide(&m, 3, &error));
   assert_int_equal(m.face_count, 12 * 64);
   assert_int_equal(test_mesh_faults(&m).open_edges, 0);
@@ -65,8 +62,7 @@ TEST(subdividing_an_octahedron_weights_the_limit_right) {
   const double at[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   const uint32_t face[8][3] = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
                                {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  OWNED(abbe_mesh, m);
-  OK(abbe_mesh_make(6, 8, false, &m, &error));
+  MADE(abbe_mesh, m, abbe_mesh_make(6, 8, false, &m, &error));
   memcpy(m.position, at, sizeof at);
   memcpy(m.face, face, sizeof face);
   OK(abbe_mesh_subdivide(&m, 1, &error));
@@ -82,7 +78,7 @@ TEST(subdividing_an_octahedron_weights_the_limit_right) {
 }
 
 TEST(transforms_mirror_and_keep_outwards) {
-  abbe_mesh m = test_sphere(2);
+  OWNED(abbe_mesh, m) = test_sphere(2);
   const double factor[3] = {-1, 2, 1}, offset[3] = {5, 0, 0}, flat[3] = {1, 0, 1};
   double scale[16], move[16];
   abbe_transform_scale(factor, scale);
@@ -99,7 +95,6 @@ TEST(transforms_mirror_and_keep_outwards) {
   }
   abbe_transform_scale(flat, scale);
   assert_int_equal(abbe_mesh_transform(&m, scale, NULL), ABBE_INVALID_ARGUMENT);
-  abbe_mesh_free(&m);
 }
 
 static void write_text(const char *path, const char *text) {
@@ -124,14 +119,14 @@ static const char tetrahedron_stl[] =
     "endsolid t\n";
 /* positions, then indices 0 2 1, 0 1 3, 1 2 3, 2 0 3 as 16-bit numbers */
 static const char tetrahedron_gltf[] =
-    "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
-    "\"nodes\":[{\"mesh\":0,\"scale\":[2,2,2]}],\"meshes\":[{\"primitives\":[{\"attributes\":"
-    "{\"POSITION\":0},\"indices\":1}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,"
-    "\"count\":4,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,1]},{\"bufferView\":1,"
-    "\"componentType\":5123,\"count\":12,\"type\":\"SCALAR\"}],\"bufferViews\":[{\"buffer\":0,"
-    "\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":24}],\"buffers\":[{"
-    "\"byteLength\":72,\"uri\":\"data:application/octet-stream;base64,"
-    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/"
+    "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{"
+    "\"mesh\":0,\"scale\":[2,2,2]}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+    "\"indices\":1}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,"
+    "\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,1]},{\"bufferView\":1,\"componentType\":5123,"
+    "\"count\":12,\"type\":\"SCALAR\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{"
+    "\"buffer\":0,\"byteOffset\":48,\"byteLength\":24}],\"buffers\":[{\"byteLength\":72,\"uri\":"
+    "\"data:application/"
+    "octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/"
     "AAACAAEAAAABAAMAAQACAAMAAgAAAAMA\"}]}";
 
 TEST(loads_tetrahedra) {
@@ -182,9 +177,9 @@ TEST(bad_files_are_refused) {
       {"bad_mesh.gltf",
        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{"
        "\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
-       "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":2,\"type\":"
-       "\"VEC3\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":12}],\"buffers\":[{"
-       "\"byteLength\":12,\"uri\":\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAA\"}]}"},
+       "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":2,\"type\":\"VEC3\"}],"
+       "\"bufferViews\":[{\"buffer\":0,\"byteLength\":12}],\"buffers\":[{\"byteLength\":12,\"uri\":"
+       "\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAA\"}]}"},
       {"bad_mesh.fbx", "no"},
       {"bad_mesh", "no"},
   };
@@ -220,19 +215,18 @@ static const char normals_obj[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
 
 /* Scanners leave points that no face names: they are no part of its bounds. */
 TEST(points_without_faces_are_left_out) {
-  abbe_mesh m = load("t_far.ply",
-                     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
-                     "property float y\nproperty float z\nelement face 1\n"
-                     "property list uchar int vertex_indices\nend_header\n"
-                     "0 0 0\n9 9 9\n1 0 0\n0 1 0\n3 0 2 3\n",
-                     ABBE_NORMALS_SMOOTH);
+  OWNED(abbe_mesh, m) = load("t_far.ply",
+                             "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
+                             "property float y\nproperty float z\nelement face 1\n"
+                             "property list uchar int vertex_indices\nend_header\n"
+                             "0 0 0\n9 9 9\n1 0 0\n0 1 0\n3 0 2 3\n",
+                             ABBE_NORMALS_SMOOTH);
   assert_int_equal(m.vertex_count, 3);
   assert_near(test_mesh_faults(&m).max[2], 0, 0);
-  abbe_mesh_free(&m);
 }
 
 TEST(a_file_s_normals_are_its_default) {
-  abbe_mesh m = load("t_normals.obj", normals_obj, ABBE_NORMALS_AUTO);
+  OWNED(abbe_mesh, m) = load("t_normals.obj", normals_obj, ABBE_NORMALS_AUTO);
   assert_true(m.given_normals);
   const double *a = m.normal[m.face[0][0]], *b = m.normal[m.face[0][1]],
                *c = m.normal[m.face[0][2]];
@@ -250,13 +244,11 @@ TEST(a_file_s_normals_are_its_default) {
   /* an STL's are those of its faces, right or wrong */
   m = load("t_normals.stl", tetrahedron_stl, ABBE_NORMALS_AUTO);
   assert_false(m.given_normals);
-  abbe_mesh_free(&m);
 }
 
 TEST(smooth_normals_are_shared_across_split_vertices) {
   const double size[3] = {1, 1, 1};
-  OWNED(abbe_mesh, m);
-  OK(abbe_shape_box(size, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_box(size, &m, &error));
   OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_SMOOTH, &error));
   assert_int_equal(m.vertex_count, 24);
   for (size_t v = 0; v < 24; v++)

@@ -29,10 +29,8 @@ static void check_laws(const abbe_mesh *mesh, const abbe_mesh_charts *charts) {
 
 TEST(a_box_has_a_chart_a_side) {
   const double size[3] = {1, 2, 3};
-  OWNED(abbe_mesh, box);
-  OWNED(abbe_mesh_charts, charts);
-  OK(abbe_shape_box(size, &box, &error));
-  OK(abbe_mesh_charts_make(&box, &charts, &error));
+  MADE(abbe_mesh, box, abbe_shape_box(size, &box, &error));
+  MADE(abbe_mesh_charts, charts, abbe_mesh_charts_make(&box, &charts, &error));
   assert_int_equal(charts.count, 6);
   double area = 0;
   for (size_t c = 0; c < charts.count; c++) {
@@ -46,10 +44,8 @@ TEST(a_box_has_a_chart_a_side) {
 
 /* Caps of 60 degrees around x leave bands around y, and those nothing around z but four corners. */
 TEST(curved_meshes_have_few) {
-  OWNED(abbe_mesh, mesh);
-  OWNED(abbe_mesh_charts, charts);
-  OK(abbe_shape_sphere(1, 5, &mesh, &error));
-  OK(abbe_mesh_charts_make(&mesh, &charts, &error));
+  MADE(abbe_mesh, mesh, abbe_shape_sphere(1, 5, &mesh, &error));
+  MADE(abbe_mesh_charts, charts, abbe_mesh_charts_make(&mesh, &charts, &error));
   print_message("sphere: %zu charts\n", charts.count);
   assert_int_in_range(charts.count, 6, 6);
   check_laws(&mesh, &charts);
@@ -67,12 +63,10 @@ TEST(what_hangs_together) {
   static const double at[11][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                    {5, 0, 0}, {6, 0, 0}, {5, 1, 0}, {7, 0, 0}, {8, 0, 0}};
   static const uint32_t face[4][3] = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}, {9, 10, 9}};
-  OWNED(abbe_mesh, mesh);
-  OWNED(abbe_mesh_charts, charts);
-  OK(abbe_mesh_make(11, 4, false, &mesh, &error));
+  MADE(abbe_mesh, mesh, abbe_mesh_make(11, 4, false, &mesh, &error));
   memcpy(mesh.position, at, sizeof at);
   memcpy(mesh.face, face, sizeof face);
-  OK(abbe_mesh_charts_make(&mesh, &charts, &error));
+  MADE(abbe_mesh_charts, charts, abbe_mesh_charts_make(&mesh, &charts, &error));
   assert_int_equal(charts.count, 2);
   assert_int_equal(charts.face[0], charts.face[1]);
   assert_int_not_equal(charts.face[0], charts.face[2]);

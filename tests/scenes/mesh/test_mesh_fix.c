@@ -6,7 +6,7 @@
 #include "scenes/shapes/shape.h"
 
 static void assert_fixes(abbe_mesh *m, const char *word) {
-  char *what = NULL;
+  FREED char *what = NULL;
   OK(abbe_mesh_fix(m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error));
   if (word) {
     assert_non_null(what);
@@ -14,23 +14,22 @@ static void assert_fixes(abbe_mesh *m, const char *word) {
   } else {
     assert_null(what);
   }
-  free(what);
   const abbe_mesh_report r = test_mesh_faults(m);
   assert_int_equal(r.open_edges + r.crowded_edges + r.flipped_edges + r.degenerate_faces, 0);
   assert_true(r.volume > 0);
 }
 
 TEST(a_sound_mesh_is_left_alone) {
-  abbe_mesh m = test_sphere(2);
+  OWNED(abbe_mesh, m) = test_sphere(2);
   const double(*before)[3] = (const double(*)[3])m.position;
   assert_fixes(&m, NULL);
   assert_ptr_equal(before, m.position);
-  abbe_mesh_free(&m);
 }
 
 /* Faces with corners of their own, each rounded in another way by up to `off` of the size. */
 static abbe_mesh torn_sphere(double off) {
-  abbe_mesh whole = test_sphere(2), m;
+  OWNED(abbe_mesh, whole) = test_sphere(2);
+  abbe_mesh m;
   uint32_t random = 1;
   OK(abbe_mesh_make(3 * whole.face_count, whole.face_count, false, &m, &error));
   for (size_t f = 0; f < whole.face_count; f++)
@@ -44,44 +43,39 @@ static abbe_mesh torn_sphere(double off) {
         m.normal[v][i] = whole.normal[whole.face[f][k]][i];
       }
     }
-  abbe_mesh_free(&whole);
   return m;
 }
 
 TEST(corners_that_lie_a_little_apart_are_joined) {
   static const double off[] = {1e-9, 1e-7, 1e-6, 1e-5};
   for (size_t i = 0; i < sizeof off / sizeof *off; i++) {
-    abbe_mesh m = torn_sphere(off[i]);
+    OWNED(abbe_mesh, m) = torn_sphere(off[i]);
     assert_int_equal(test_mesh_faults(&m).open_edges > 0, off[i] > 1e-8);
     assert_fixes(&m, off[i] > 1e-8 ? "corners joined that lay up to" : NULL);
     assert_near(test_mesh_faults(&m).volume, 4.0 / 3 * 3.14159265, 0.2);
-    abbe_mesh_free(&m);
   }
   /* farther apart than that they are another mesh's business */
-  abbe_mesh m = torn_sphere(1e-2);
+  OWNED(abbe_mesh, m) = torn_sphere(1e-2);
   REFUSED(ABBE_GEOMETRY, "", abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, NULL, &error));
-  abbe_mesh_free(&m);
 }
 
 TEST(an_inverted_mesh_is_turned) {
-  abbe_mesh m = test_sphere(2);
+  OWNED(abbe_mesh, m) = test_sphere(2);
   for (size_t f = 0; f < m.face_count; f++) test_turn_face(&m, f);
   assert_true(test_mesh_faults(&m).volume < 0);
   assert_fixes(&m, "inside-out part turned");
   assert_true(abbe_vector_dot(m.normal[0], m.position[0]) > 0.99);
-  abbe_mesh_free(&m);
 }
 
 TEST(single_flipped_faces_are_turned) {
-  abbe_mesh m = test_sphere(2);
+  OWNED(abbe_mesh, m) = test_sphere(2);
   test_turn_face(&m, 0);
   test_turn_face(&m, 77);
   assert_fixes(&m, "2 faces turned");
-  abbe_mesh_free(&m);
 }
 
 TEST(small_and_flat_holes_are_closed) {
-  abbe_mesh m = test_sphere(3);
+  OWNED(abbe_mesh, m) = test_sphere(3);
   m.face_count--;
   assert_fixes(&m, "1 hole closed");
   assert_int_equal(m.face_count, 1280);
@@ -91,32 +85,29 @@ TEST(small_and_flat_holes_are_closed) {
   m.face_count -= 2;
   assert_fixes(&m, "1 hole closed");
   assert_true(fabs(test_mesh_faults(&m).volume - 1) < 1e-12);
-  abbe_mesh_free(&m);
 }
 
 TEST(a_large_bent_hole_is_refused_and_counted) {
-  abbe_mesh m = test_sphere(3);
+  OWNED(abbe_mesh, m) = test_sphere(3);
   m.face_count -= 200;
   char *what = NULL;
   const abbe_mesh_report r = test_mesh_faults(&m);
   REFUSED(ABBE_GEOMETRY, "", abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error));
   assert_null(what);
-  char where[160];
-  snprintf(where, sizeof where,
-           "%zu open edges make %zu hole%s, the widest of %zu edges, %.3g across", r.open_edges,
-           r.holes, r.holes == 1 ? "" : "s", r.hole_edges, r.hole_size);
-  assert_contains(last_error.text, where);
-  snprintf(where, sizeof where, "around (%.4g, %.4g, %.4g)", r.hole[0], r.hole[1], r.hole[2]);
-  assert_contains(last_error.text, where);
+  assert_contains(last_error.text,
+                  printed("%zu open edges make %zu hole%s, the widest of %zu edges, %.3g across",
+                          r.open_edges, r.holes, r.holes == 1 ? "" : "s", r.hole_edges,
+                          r.hole_size));
+  assert_contains(last_error.text,
+                  printed("around (%.4g, %.4g, %.4g)", r.hole[0], r.hole[1], r.hole[2]));
   assert_contains(last_error.text, "'repair: true' closes holes");
   assert_int_equal(m.face_count, 1080);
-  abbe_mesh_free(&m);
 }
 
 /* The rim of a bowl, and a body with two unlike holes. */
 TEST(holes_are_measured_and_placed) {
   const test_box box = {{0, 0, 0}, {3, 2, 1}, false};
-  abbe_mesh m = test_boxes(&box, 1);
+  OWNED(abbe_mesh, m) = test_boxes(&box, 1);
   memmove(m.face, m.face + 2, 8 * sizeof *m.face); /* neither x = 0 nor z = 1 */
   m.face_count = 8;
   abbe_mesh_report r = test_mesh_faults(&m);
@@ -131,12 +122,11 @@ TEST(holes_are_measured_and_placed) {
   m.face_count = 8;
   r = test_mesh_faults(&m);
   assert_int_equal(r.open_edges, 6);
-  abbe_mesh_free(&m);
 }
 
 /* Without being asked a bowl is no solid; repaired it is one with a lid, as small as can be. */
 TEST(repair_closes_what_bends) {
-  abbe_mesh m = test_sphere(3);
+  OWNED(abbe_mesh, m) = test_sphere(3);
   size_t kept = 0;
   for (size_t f = 0; f < m.face_count; f++) {
     const uint32_t *c = m.face[f];
@@ -147,27 +137,24 @@ TEST(repair_closes_what_bends) {
     if (most < 0.3) memmove(m.face[kept++], c, sizeof *m.face);
   }
   m.face_count = kept;
-  char *what = NULL;
+  FREED char *what = NULL;
   REFUSED(ABBE_GEOMETRY, "", abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, NULL, &error));
   OK(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, true, NULL, &what, &error));
   assert_contains(what, "1 hole closed, 1.98 across in the mesh's own unit");
-  free(what);
   const abbe_mesh_report r = test_mesh_faults(&m);
   assert_int_equal(r.open_edges + r.crowded_edges + r.flipped_edges + r.degenerate_faces, 0);
   assert_int_equal(r.shells, 1);
   /* of half a ball, a little more */
   assert_true(r.volume > 2.0 && r.volume < 3.2);
   assert_true(r.area > 2 * 3.14159 && r.area < 3.6 * 3.14159);
-  abbe_mesh_free(&m);
 }
 
 TEST(faces_that_are_there_twice_are_one) {
   const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{0, 0, 0}, {1, 1, 1}, false}};
-  abbe_mesh m = test_boxes(box, 2);
+  OWNED(abbe_mesh, m) = test_boxes(box, 2);
   assert_fixes(&m, "12 faces that were there twice dropped");
   assert_int_equal(m.face_count, 12);
   assert_near(test_mesh_faults(&m).volume, 1, 1e-12);
-  abbe_mesh_free(&m);
 }
 
 static char *repaired(abbe_mesh *m) {
@@ -179,8 +166,8 @@ static char *repaired(abbe_mesh *m) {
 /* Both sides of every face are there; and two bodies share a wall. */
 TEST(repair_drops_walls_of_faces_back_to_back) {
   const test_box both[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{0, 0, 0}, {1, 1, 1}, true}};
-  abbe_mesh m = test_boxes(both, 2);
-  char *what = repaired(&m);
+  OWNED(abbe_mesh, m) = test_boxes(both, 2);
+  FREED char *what = repaired(&m);
   assert_contains(what, "12 pairs of faces back to back");
   assert_int_equal(m.face_count, 12);
   assert_near(test_mesh_faults(&m).volume, 1, 1e-12);
@@ -193,33 +180,29 @@ TEST(repair_drops_walls_of_faces_back_to_back) {
   assert_int_equal(m.face_count, 20);
   assert_int_equal(test_mesh_faults(&m).shells, 1);
   assert_near(test_mesh_faults(&m).volume, 2, 1e-12);
-  free(what);
-  abbe_mesh_free(&m);
 }
 
 /* A fin on a box: whether it is to go or to be a body is for whoever made it. */
 TEST(sheets_are_refused) {
   const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{5, 5, 5}, {6, 6, 6}, false}};
   for (int repair = 0; repair < 2; repair++) {
-    abbe_mesh m = test_boxes(box, 2);
+    OWNED(abbe_mesh, m) = test_boxes(box, 2);
     m.face[12][0] = 4, m.face[12][1] = 5, m.face[12][2] = 15;
     m.face_count = 13;
     REFUSED(ABBE_GEOMETRY, "1 edge with more than two faces, one of 3 from (1, 0, 0) to (1, 0, 1)",
             abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, repair == 1, NULL, NULL, &error));
     assert_contains(last_error.text, "sheets that hang on a body");
     assert_int_equal(m.face_count, 13);
-    abbe_mesh_free(&m);
   }
 }
 
 /* A point on another's edge, as booleans of modellers leave it: a slit without a width. */
 TEST(repair_closes_slits) {
   const test_box box = {{0, 0, 0}, {1, 1, 1}, false};
-  abbe_mesh corner = test_boxes(&box, 1), m;
-  OK(abbe_mesh_make(9, 13, false, &m, &error));
+  OWNED(abbe_mesh, corner) = test_boxes(&box, 1);
+  MADE(abbe_mesh, m, abbe_mesh_make(9, 13, false, &m, &error));
   memcpy(m.position, corner.position, 8 * sizeof *m.position);
   memcpy(m.face, corner.face, 12 * sizeof *m.face);
-  abbe_mesh_free(&corner);
   m.position[8][0] = 0.4, m.position[8][2] = 1; /* on the edge from 1 to 5 */
   /* the top's face at that edge is cut there, the front's is not */
   const uint32_t left[3] = {1, 8, 3}, right[3] = {8, 5, 7};
@@ -236,14 +219,14 @@ TEST(repair_closes_slits) {
   const abbe_mesh_report r = test_mesh_faults(&m);
   assert_int_equal(r.open_edges + r.crowded_edges + r.flipped_edges + r.degenerate_faces, 0);
   assert_near(r.volume, 1, 1e-12);
-  abbe_mesh_free(&m);
 }
 
 /* Depth is told among what does not cross: a body that reaches into another is no bubble of it. */
 TEST(bodies_that_cross_stay_bodies) {
   const test_box box[2] = {{{-1, -1, -1}, {1, 1, 1}, false},
                            {{-0.1, -0.3, -0.3}, {1.9, 0.9, 0.7}, false}};
-  abbe_mesh m = test_boxes(box, 2), *part = NULL;
+  OWNED(abbe_mesh, m) = test_boxes(box, 2);
+  abbe_mesh *part = NULL;
   size_t solids = 0, count = 0;
   char *what = NULL;
   OK(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, &solids, &what, &error));
@@ -260,7 +243,6 @@ TEST(bodies_that_cross_stay_bodies) {
   OK(abbe_mesh_split(&m, &part, &count, &error));
   assert_int_equal(count, 1);
   assert_null(part);
-  abbe_mesh_free(&m);
 }
 
 TEST(more_solids_than_are_followed_are_refused) {
@@ -271,7 +253,8 @@ TEST(more_solids_than_are_followed_are_refused) {
     box[i] = (test_box){{-1 - a, -a, -0.5 - a}, {1 + a, a, 0.5 + a}, false};
     if (i % 2) box[i] = (test_box){{-a, -1 - a, -0.6 + 0.5 * a}, {a, 1 + a, 0.6 - 0.5 * a}, false};
   }
-  abbe_mesh m = test_boxes(box, COUNT), *part = NULL;
+  OWNED(abbe_mesh, m) = test_boxes(box, COUNT);
+  abbe_mesh *part = NULL;
   size_t count = 0;
   abbe_error error = {0};
   const abbe_result result = abbe_mesh_split(&m, &part, &count, &error);
@@ -283,13 +266,11 @@ TEST(more_solids_than_are_followed_are_refused) {
     assert_int_equal(result, ABBE_UNSUPPORTED);
     assert_contains(error.text, "at most 32");
   }
-  abbe_mesh_free(&m);
 }
 
 TEST(a_surface_that_crosses_itself_is_said) {
-  OWNED(abbe_mesh, m);
   FREED char *what = NULL;
-  OK(abbe_shape_ring(1, 0.3, 48, 24, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_ring(1, 0.3, 48, 24, &m, &error));
   for (size_t v = 0; v < m.vertex_count; v++)
     if (m.position[v][0] > 0.8) m.position[v][0] -= 2.1;
   OK(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error));
@@ -300,8 +281,7 @@ TEST(a_surface_that_crosses_itself_is_said) {
 /* A cylinder: around it smooth, at its rims not. */
 TEST(normals_by_angles_keep_creases) {
   const double profile[4][2] = {{0, 0}, {1, 0}, {1, 2}, {0, 2}};
-  OWNED(abbe_mesh, m);
-  OK(abbe_shape_lathe(profile, 4, 24, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_lathe(profile, 4, 24, &m, &error));
   OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
   OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_AUTO, &error));
   assert_int_equal(m.vertex_count, 24 * 4 + 2);
@@ -317,14 +297,13 @@ TEST(normals_by_angles_keep_creases) {
 }
 
 TEST(degenerate_faces_are_fixed) {
-  OWNED(abbe_mesh, m);
   /* a box whose top has a vertex in the middle of one edge: one face without area beside it */
   const double at[9][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},  {0, 0, 1},
                            {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0.5, 0, 1}};
   const uint32_t face[16][3] = {{0, 2, 1}, {0, 3, 2}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6},
                                 {3, 0, 4}, {3, 4, 7}, {0, 1, 5}, {0, 5, 4}, {4, 5, 8}, {4, 8, 7},
                                 {8, 5, 6}, {8, 6, 7}, {0, 0, 1}, {6, 7, 7}};
-  OK(abbe_mesh_make(9, 16, false, &m, &error));
+  MADE(abbe_mesh, m, abbe_mesh_make(9, 16, false, &m, &error));
   memcpy(m.position, at, sizeof at);
   memcpy(m.face, face, sizeof face);
   assert_int_equal(test_mesh_faults(&m).degenerate_faces, 3);
@@ -353,7 +332,7 @@ TEST(a_bubble_faces_into_itself) {
   abbe_mesh outer = test_sphere(2), inner;
   OK(abbe_shape_sphere(0.5, 2, &inner, &error));
   const double whole = test_mesh_faults(&outer).volume, hole = test_mesh_faults(&inner).volume;
-  abbe_mesh m = joined(&outer, &inner);
+  OWNED(abbe_mesh, m) = joined(&outer, &inner);
   assert_int_equal(test_mesh_faults(&m).shells, 2);
   assert_fixes(&m, "1 inside-out part");
   assert_true(fabs(test_mesh_faults(&m).volume - (whole - hole)) < 1e-12);
@@ -362,21 +341,20 @@ TEST(a_bubble_faces_into_itself) {
   assert_true(abbe_mesh_contains(&m, in_glass));
   assert_false(abbe_mesh_contains(&m, in_bubble));
   assert_false(abbe_mesh_contains(&m, out));
-  abbe_mesh_free(&m);
 }
 
 /* The lid of a box is missing: fixed, all that was there has the file's normals, the lid has its
  * own. */
 TEST(fixing_keeps_given_normals) {
   const test_box box = {{0, 0, 0}, {1, 1, 1}, false};
-  abbe_mesh m = test_boxes(&box, 1), whole = test_boxes(&box, 1); /* smooth, as if a file said so */
-  char *what = NULL;
+  OWNED(abbe_mesh, m) = test_boxes(&box, 1),
+                   whole = test_boxes(&box, 1); /* smooth, as if a file said so */
+  FREED char *what = NULL;
   m.given_normals = true;
   m.face_count = 10;
   for (size_t f = 0; f < 10; f++) test_turn_face(&m, f); /* and inside out */
   OK(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, &what, &error));
   assert_contains(what, "hole closed");
-  free(what);
   assert_true(m.given_normals);
   for (size_t f = 0; f < 10; f++)
     for (int k = 0; k < 3; k++) {
@@ -387,6 +365,4 @@ TEST(fixing_keeps_given_normals) {
     }
   for (size_t f = 10; f < m.face_count; f++)
     for (int k = 0; k < 3; k++) assert_near(m.normal[m.face[f][k]][2], 1, 1e-9);
-  abbe_mesh_free(&whole);
-  abbe_mesh_free(&m);
 }

@@ -45,18 +45,16 @@ static abbe_mesh strips(size_t count, size_t points) {
 }
 
 TEST(many_short_rims_are_closed) {
-  abbe_mesh m = strips(500, 20);
+  OWNED(abbe_mesh, m) = strips(500, 20);
   assert_repairs(&m, "500 holes closed");
-  abbe_mesh_free(&m);
 }
 
 /* The search takes the cube of a rim's points: what is too much is refused before it begins. */
 TEST(many_long_rims_are_refused) {
-  abbe_mesh m = strips(21, 600);
+  OWNED(abbe_mesh, m) = strips(21, 600);
   const size_t faces = m.face_count;
   REFUSED(ABBE_GEOMETRY, "21 holes that bend, of up to 600 edges",
           abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, true, NULL, NULL, &error));
   assert_contains(last_error.text, "where the mesh was made");
   assert_int_equal(m.face_count, faces);
-  abbe_mesh_free(&m);
 }

@@ -4,28 +4,25 @@
 #include "scenes/shapes/shape.h"
 
 static abbe_result find(const abbe_mesh *m, abbe_shells *out, abbe_error *error) {
-  OWNED(abbe_topology, t);
+  OWNED(abbe_topology, t) = {0};
   assert_int_equal(abbe_topology_make(m, &t, NULL), ABBE_OK);
-  const abbe_result result = abbe_shells_find(m, &t, out, error);
-  return result;
+  return abbe_shells_find(m, &t, out, error);
 }
 
 static abbe_shells shells_of(const test_box *box, size_t count) {
   abbe_shells s;
-  abbe_mesh m = test_boxes(box, count);
+  OWNED(abbe_mesh, m) = test_boxes(box, count);
   OK(find(&m, &s, &error));
-  abbe_mesh_free(&m);
   return s;
 }
 
 TEST(one_shell_is_one_solid) {
   const test_box box = {{0, 0, 0}, {1, 2, 3}, false};
-  abbe_shells s = shells_of(&box, 1);
+  OWNED(abbe_shells, s) = shells_of(&box, 1);
   assert_int_equal(s.count, 1);
   assert_int_equal(s.solid_count, 1);
   assert_int_equal(s.crossing_count + s.self_count + s.shell[0].depth, 0);
   assert_near(s.shell[0].volume, 6, 1e-12);
-  abbe_shells_free(&s);
   abbe_shells_free(&s);
 }
 
@@ -35,14 +32,13 @@ TEST(shells_nest) {
                            {{1, 1, 1}, {8, 8, 8}, true},
                            {{2, 2, 2}, {3, 3, 3}, false},
                            {{20, 0, 0}, {21, 1, 1}, false}};
-  abbe_shells s = shells_of(box, 4);
+  OWNED(abbe_shells, s) = shells_of(box, 4);
   assert_int_equal(s.count, 4);
   assert_int_equal(s.crossing_count, 0);
   assert_int_equal(s.solid_count, 1);
   for (uint32_t i = 0; i < 4; i++) assert_int_equal(s.shell[i].depth, i == 3 ? 0 : i);
   assert_near(s.shell[1].volume, -343, 1e-9);
   assert_int_equal(s.around[s.shell[1].first], 0);
-  abbe_shells_free(&s);
 }
 
 /* Whichever way round the shells are: that is what depths are asked for. */
@@ -50,10 +46,9 @@ TEST(nesting_does_not_hang_on_orientation) {
   for (int turned = 0; turned < 4; turned++) {
     const test_box box[2] = {{{0, 0, 0}, {9, 9, 9}, turned & 1},
                              {{1, 1, 1}, {8, 8, 8}, turned & 2}};
-    abbe_shells s = shells_of(box, 2);
+    OWNED(abbe_shells, s) = shells_of(box, 2);
     assert_int_equal(s.shell[0].depth, 0);
     assert_int_equal(s.shell[1].depth, 1);
-    abbe_shells_free(&s);
   }
 }
 
@@ -61,7 +56,7 @@ TEST(what_crosses_is_told_apart_and_where) {
   const test_box box[3] = {{{0, 0, 0}, {2, 2, 2}, false},
                            {{1, 0.5, 0.7}, {4, 1.5, 1.5}, false},
                            {{3, 0.1, 0.2}, {6, 1.9, 1.8}, false}};
-  abbe_shells s = shells_of(box, 3);
+  OWNED(abbe_shells, s) = shells_of(box, 3);
   assert_int_equal(s.crossing_count, 2);
   assert_int_equal(s.flush_count, 0);
   assert_int_equal(s.crossing[0][0], 0);
@@ -72,7 +67,6 @@ TEST(what_crosses_is_told_apart_and_where) {
   assert_int_equal(s.shell[0].solid, s.shell[2].solid);
   assert_true(s.shell[0].solid != s.shell[1].solid);
   assert_near(s.place[0], fabs(s.place[0] - 2) < fabs(s.place[0] - 3) ? 2 : 3, 1e-9);
-  abbe_shells_free(&s);
 }
 
 /* The hollow belongs to the body around it; another body that reaches into it has none. */
@@ -80,31 +74,29 @@ TEST(a_hollow_stays_with_its_body) {
   const test_box box[3] = {{{0, 0, 0}, {9, 9, 9}, false},
                            {{2, 2, 2}, {7, 7, 7}, true},
                            {{5, 3, 3.5}, {12, 6, 6}, false}};
-  abbe_shells s = shells_of(box, 3);
+  OWNED(abbe_shells, s) = shells_of(box, 3);
   assert_int_equal(s.crossing_count, 2);
   assert_int_equal(s.solid_count, 2);
   assert_int_equal(s.shell[0].solid, s.shell[1].solid);
   assert_true(s.shell[2].solid != s.shell[0].solid);
-  abbe_shells_free(&s);
 }
 
 TEST(hollows_that_cross_are_refused_with_the_place) {
   const test_box box[3] = {{{0, 0, 0}, {9, 9, 9}, false},
                            {{1, 1, 1}, {5, 5, 5}, true},
                            {{4, 2, 2.5}, {8, 4, 4.5}, true}};
-  abbe_mesh m = test_boxes(box, 3);
+  OWNED(abbe_mesh, m) = test_boxes(box, 3);
   abbe_shells s;
   REFUSED(ABBE_GEOMETRY, "hollows of the mesh cross", find(&m, &s, &error));
   assert_contains(last_error.text, "at (5, ");
   assert_null(s.shell);
-  abbe_mesh_free(&m);
 }
 
 TEST(faces_on_one_another_are_no_crossing_but_told) {
   /* back to back, cut into other triangles; and flush below */
   const test_box stacked[2] = {{{0, 0, 0}, {2, 2, 1}, false},
                                {{0.5, 0.6, 1}, {1.4, 1.5, 2}, false}};
-  abbe_shells s = shells_of(stacked, 2);
+  OWNED(abbe_shells, s) = shells_of(stacked, 2);
   assert_true(s.flush_count > 0);
   assert_int_equal(s.solid_count, 2);
   abbe_shells_free(&s);
@@ -120,14 +112,11 @@ TEST(faces_on_one_another_are_no_crossing_but_told) {
   assert_int_equal(s.count, 2);
   assert_int_equal(s.flush_count + s.crossing_count, 0);
   assert_int_equal(s.solid_count, 1);
-  abbe_shells_free(&s);
 }
 
 TEST(a_surface_that_crosses_itself_is_told) {
-  OWNED(abbe_mesh, m);
-  OWNED(abbe_shells, s);
-  OK(abbe_shape_ring(1, 0.3, 48, 24, &m, &error));
-  OK(find(&m, &s, &error));
+  MADE(abbe_mesh, m, abbe_shape_ring(1, 0.3, 48, 24, &m, &error));
+  MADE(abbe_shells, s, find(&m, &s, &error));
   assert_int_equal(s.self_count, 0);
   abbe_shells_free(&s);
   /* the tube is pulled through the other side of the ring */
@@ -151,12 +140,11 @@ TEST(many_shells_are_told_apart) {
     }
     if (i % 100 == 9) box[i].min[0] -= 2.5, box[i].min[1] += 0.1, box[i].min[2] += 0.1;
   }
-  abbe_shells s = shells_of(box, COUNT);
+  OWNED(abbe_shells, s) = shells_of(box, COUNT);
   assert_int_equal(s.count, COUNT);
   assert_int_equal(s.crossing_count, 3);
   assert_int_equal(s.solid_count, 2);
   for (size_t i = 0; i < COUNT; i++) assert_int_equal(s.shell[i].depth, 0);
-  abbe_shells_free(&s);
 }
 
 /* Boxes each in the next larger one. */
@@ -168,18 +156,15 @@ static abbe_mesh nested_boxes(size_t count) {
       box[i].max[k] = 1 + 0.01 * (double)i;
       box[i].min[k] = -box[i].max[k];
     }
-  abbe_mesh m = test_boxes(box, count);
-  return m;
+  return test_boxes(box, count);
 }
 
 /* Every ray meets all of them: looking for one after another from the start would take minutes. */
 TEST(deep_nests_take_the_square_of_their_depth) {
   enum { COUNT = 200 };
-  abbe_mesh m = nested_boxes(COUNT);
-  OWNED(abbe_shells, s);
-  OK(find(&m, &s, &error));
+  OWNED(abbe_mesh, m) = nested_boxes(COUNT);
+  MADE(abbe_shells, s, find(&m, &s, &error));
   for (uint32_t i = 0; i < COUNT; i++) assert_int_equal(s.shell[i].depth, COUNT - 1 - i);
-  abbe_mesh_free(&m);
 }
 
 /* Bars along x, all through bars along y: each pair is found, and those alike are one solid. */
@@ -192,23 +177,21 @@ TEST(all_through_all_is_two_solids) {
     box[i].min[1 - along] = 3.0 * (i % COUNT) + 0.1;
     box[i].max[1 - along] = 3.0 * (i % COUNT) + 1;
   }
-  abbe_shells s = shells_of(box, 2 * COUNT);
+  OWNED(abbe_shells, s) = shells_of(box, 2 * COUNT);
   assert_int_equal(s.crossing_count, COUNT * COUNT);
   assert_int_equal(s.solid_count, 2);
   for (size_t i = 0; i < 2 * COUNT; i++)
     assert_int_equal(s.shell[i].solid == s.shell[0].solid, i < COUNT);
-  abbe_shells_free(&s);
 }
 
 /* The work that it refuses to exceed takes the sanitizers ten seconds, and shows them no more than
  * the nest above and the refusal of hollows do: it is left to the release build. */
 #ifndef __SANITIZE_ADDRESS__
 TEST(what_would_take_too_long_is_refused) {
-  abbe_mesh m = nested_boxes(1200);
+  OWNED(abbe_mesh, m) = nested_boxes(1200);
   abbe_shells s;
   REFUSED(ABBE_UNSUPPORTED, "the 1200 parts of the mesh, of 14400 faces, lie in and through",
           find(&m, &s, &error));
   assert_null(s.shell);
-  abbe_mesh_free(&m);
 }
 #endif

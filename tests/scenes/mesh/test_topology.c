@@ -6,10 +6,8 @@
 
 TEST(a_split_box_has_eight_points_and_eighteen_edges) {
   const double size[3] = {1, 2, 3};
-  OWNED(abbe_mesh, box);
-  OWNED(abbe_topology, t);
-  OK(abbe_shape_box(size, &box, &error));
-  OK(abbe_topology_make(&box, &t, &error));
+  MADE(abbe_mesh, box, abbe_shape_box(size, &box, &error));
+  MADE(abbe_topology, t, abbe_topology_make(&box, &t, &error));
   assert_int_equal(box.vertex_count, 24);
   assert_int_equal(t.point_count, 8);
   assert_int_equal(t.edge_count, 18);
@@ -20,33 +18,28 @@ TEST(a_split_box_has_eight_points_and_eighteen_edges) {
 }
 
 TEST(points_join_within_the_tolerance_only) {
-  OWNED(abbe_mesh, m);
-  OWNED(abbe_topology, t);
-  OK(abbe_mesh_make(6, 2, false, &m, &error));
+  MADE(abbe_mesh, m, abbe_mesh_make(6, 2, false, &m, &error));
   const double at[6][3] = {{0, 0, 0},     {1, 0, 0},      {0, 1, 0},
                            {0, 0, 3e-10}, {1, 0, -3e-10}, {0, 1, 1e-7}};
   for (size_t v = 0; v < 6; v++)
     for (int k = 0; k < 3; k++) m.position[v][k] = at[v][k];
   for (uint32_t v = 0; v < 6; v++) m.face[v / 3][v % 3] = v;
-  OK(abbe_topology_make(&m, &t, &error));
+  MADE(abbe_topology, t, abbe_topology_make(&m, &t, &error));
   assert_int_equal(t.point_count, 4);
   assert_int_equal(t.edge_count, 5);
 }
 
 TEST(a_large_mesh_is_whole) {
-  OWNED(abbe_mesh, m);
-  OWNED(abbe_topology, t);
-  OK(abbe_shape_ring(1, 0.3, 256, 128, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_ring(1, 0.3, 256, 128, &m, &error));
   OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
-  OK(abbe_topology_make(&m, &t, &error));
+  MADE(abbe_topology, t, abbe_topology_make(&m, &t, &error));
   assert_int_equal(t.point_count, 256 * 128);
   assert_int_equal(t.edge_count, 3 * 256 * 128);
 }
 
 TEST(bad_indices_and_positions_are_refused) {
-  OWNED(abbe_mesh, m);
   abbe_topology t;
-  OK(abbe_shape_rectangle(1, 1, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_rectangle(1, 1, &m, &error));
   m.face[1][2] = 4;
   REFUSED(ABBE_INVALID_ARGUMENT, "vertex 4 of 4", abbe_topology_make(&m, &t, &error));
   m.face[1][2] = 3;
@@ -69,24 +62,21 @@ TEST(bodies_that_touch_along_an_edge_are_two) {
     const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false},
                              {{1, i & 1 ? -1 : 1, 0}, {2, i & 1 ? 0 : 2, 1}, false}};
     double matrix[16];
-    OWNED(abbe_topology, t);
-    abbe_mesh m = test_boxes(box, 2);
+    OWNED(abbe_mesh, m) = test_boxes(box, 2);
     abbe_transform_rotate(0.8 * i, turn, matrix);
     OK(abbe_mesh_transform(&m, matrix, &error));
-    OK(abbe_topology_make(&m, &t, &error));
+    MADE(abbe_topology, t, abbe_topology_make(&m, &t, &error));
     assert_int_equal(count_touching(&t), 1);
     assert_int_equal(t.shell_count, 2);
     for (size_t f = 0; f < 24; f++) assert_int_equal(t.shell[f], f / 12);
-    abbe_mesh_free(&m);
   }
 }
 
 /* Back to back, by a whole side; and one corner on another. */
 TEST(what_touches_otherwise_is_two_as_well) {
-  OWNED(abbe_topology, t);
   const test_box side[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 0, 0}, {2, 1, 1}, false}};
-  abbe_mesh m = test_boxes(side, 2);
-  OK(abbe_topology_make(&m, &t, &error));
+  OWNED(abbe_mesh, m) = test_boxes(side, 2);
+  MADE(abbe_topology, t, abbe_topology_make(&m, &t, &error));
   assert_int_equal(t.shell_count, 2);
   assert_int_equal(count_touching(&t), 4 + 1); /* and the diagonal, which both cut alike */
   abbe_topology_free(&t);
@@ -96,18 +86,15 @@ TEST(what_touches_otherwise_is_two_as_well) {
   OK(abbe_topology_make(&m, &t, &error));
   assert_int_equal(t.point_count, 15);
   assert_int_equal(t.shell_count, 2);
-  abbe_mesh_free(&m);
 }
 
 /* A fin on an edge; and one of two boxes inside out: nothing pairs up. */
 TEST(what_does_not_pair_up_hangs_together) {
-  OWNED(abbe_topology, t);
   const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 1, 0}, {2, 2, 1}, true}};
-  abbe_mesh m = test_boxes(box, 2);
+  OWNED(abbe_mesh, m) = test_boxes(box, 2);
   m.face[12][0] = 6, m.face[12][1] = 7; /* from the edge x = y = 1 to a corner */
   m.face_count = 13;
-  OK(abbe_topology_make(&m, &t, &error));
+  MADE(abbe_topology, t, abbe_topology_make(&m, &t, &error));
   assert_int_equal(count_touching(&t), 0);
   assert_int_equal(t.shell_count, 1);
-  abbe_mesh_free(&m);
 }

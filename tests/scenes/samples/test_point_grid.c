@@ -23,9 +23,8 @@ static bool stop_now(void *user, size_t number) {
 
 TEST(all_near_ones_are_found) {
   uint64_t random = 1;
-  OWNED(abbe_point_grid, grid);
   const double cell = 0.07;
-  OK(abbe_point_grid_make(cell, COUNT, &grid, &error));
+  MADE(abbe_point_grid, grid, abbe_point_grid_make(cell, COUNT, &grid, &error));
   for (int i = 0; i < COUNT; i++) {
     for (int k = 0; k < 3; k++) at[i][k] = random_between(&random, -0.5, 0.5);
     abbe_point_grid_add(&grid, at[i], (size_t)i);

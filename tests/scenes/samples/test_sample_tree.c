@@ -37,12 +37,10 @@ static void check_node(const abbe_sample_tree *tree, size_t i) {
 
 TEST(all_are_in_it_once) {
   static const size_t counts[] = {1, 2, 90};
-  OWNED(abbe_mesh, ring) = {0};
-  OK(abbe_shape_ring(0.03, 0.008, 48, 24, &ring, &error));
+  MADE(abbe_mesh, ring, abbe_shape_ring(0.03, 0.008, 48, 24, &ring, &error));
   for (size_t k = 0; k < 3; k++) {
-    OWNED(abbe_surface_samples, s) = {0};
-    abbe_sample_tree tree;
-    sample(&ring, counts[k], &s, &tree);
+    OWNED(abbe_sample_tree, tree) = {0};
+    FILLED(abbe_surface_samples, s, sample(&ring, counts[k], &s, &tree));
     FREED size_t *met = calloc(s.count, sizeof *met);
     double leaves = 0;
     assert_int_equal(tree.node[0].next, tree.count);
@@ -59,20 +57,16 @@ TEST(all_are_in_it_once) {
     }
     for (size_t i = 0; i < s.count; i++) assert_int_equal(met[i], 1);
     assert_near(leaves, s.area, 1e-12);
-    abbe_sample_tree_free(&tree);
   }
 }
 
 /* Clusters face one way: of a ball no node of less than a sixteenth holds two sides. */
 TEST(clusters_face_alike) {
-  OWNED(abbe_mesh, ball) = {0};
-  OWNED(abbe_surface_samples, s);
-  abbe_sample_tree tree;
-  OK(abbe_shape_sphere(0.02, 4, &ball, &error));
-  sample(&ball, 256, &s, &tree);
+  OWNED(abbe_sample_tree, tree) = {0};
+  MADE(abbe_mesh, ball, abbe_shape_sphere(0.02, 4, &ball, &error));
+  FILLED(abbe_surface_samples, s, sample(&ball, 256, &s, &tree));
   for (size_t i = 0; i < tree.count; i++)
     if (tree.node[i].area < s.area / 15) assert_true(tree.node[i].cone > 0.3);
-  abbe_sample_tree_free(&tree);
 }
 
 /* A square 2 a wide and parallel to the floor at a height, facing down. */
@@ -129,11 +123,9 @@ static double from_corner(double a, double b, double h) {
 TEST(cuts) {
   static const double places[] = {0, 0.1, 0.3, 1, 3};
   const double a = 0.1, h = 0.15;
-  OWNED(abbe_mesh, roof) = {0};
-  OWNED(abbe_surface_samples, s);
-  abbe_sample_tree tree;
-  make_roof(a, h, &roof);
-  sample(&roof, 256, &s, &tree);
+  OWNED(abbe_sample_tree, tree) = {0};
+  FILLED(abbe_mesh, roof, make_roof(a, h, &roof));
+  FILLED(abbe_surface_samples, s, sample(&roof, 256, &s, &tree));
   size_t before = SIZE_MAX;
   for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
     const double x = places[k];
@@ -155,7 +147,6 @@ TEST(cuts) {
     before = few;
   }
   assert_true(before <= 2);
-  abbe_sample_tree_free(&tree);
 }
 
 TEST(nothing) {

@@ -23,9 +23,8 @@ static abbe_surface_curvature *fit(const abbe_mesh *mesh, abbe_surface_samples *
 
 TEST(sphere) {
   const double radius = 0.02;
-  OWNED(abbe_mesh, ball) = {0};
   OWNED(abbe_surface_samples, s) = {0};
-  OK(abbe_shape_sphere(radius, 5, &ball, &error));
+  MADE(abbe_mesh, ball, abbe_shape_sphere(radius, 5, &ball, &error));
   FREED abbe_surface_curvature *c = fit(&ball, &s);
   for (size_t i = 0; i < s.count; i++)
     for (int k = 0; k < 2; k++) assert_near(c[i].curvature[k] * radius, 1, 0.03);
@@ -35,9 +34,8 @@ TEST(sphere) {
 TEST(cylinder) {
   const double inner = 0.04, outer = 0.0435, height = 0.1;
   const double profile[4][2] = {{inner, 0}, {inner, height}, {outer, height}, {outer, 0}};
-  OWNED(abbe_mesh, ring) = {0};
   OWNED(abbe_surface_samples, s) = {0};
-  OK(abbe_shape_lathe(profile, 4, 256, &ring, &error));
+  MADE(abbe_mesh, ring, abbe_shape_lathe(profile, 4, 256, &ring, &error));
   FREED abbe_surface_curvature *c = fit(&ring, &s);
   size_t walls[2] = {0, 0};
   for (size_t i = 0; i < s.count; i++) {
@@ -56,9 +54,8 @@ TEST(cylinder) {
 }
 
 TEST(plane) {
-  OWNED(abbe_mesh, plane) = {0};
   OWNED(abbe_surface_samples, s) = {0};
-  OK(abbe_shape_rectangle(0.3, 0.2, &plane, &error));
+  MADE(abbe_mesh, plane, abbe_shape_rectangle(0.3, 0.2, &plane, &error));
   FREED abbe_surface_curvature *c = fit(&plane, &s);
   for (size_t i = 0; i < s.count; i++)
     for (int k = 0; k < 2; k++) assert_near(c[i].curvature[k], 0, 1e-9);

@@ -35,11 +35,9 @@ static double distance(const abbe_surface_point *a, const abbe_surface_point *b)
 
 /* Kept ones are a radius apart, and every candidate is within it of a kept one. */
 TEST(neighbours_are_apart_and_cover) {
-  OWNED(abbe_mesh, ring) = {0};
-  OK(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, &error));
+  MADE(abbe_mesh, ring, abbe_shape_ring(0.03, 0.008, 64, 32, &ring, &error));
   for (int sided = 0; sided < 2; sided++) {
-    OWNED(abbe_surface_samples, s) = {0};
-    take(&ring, 300, 7, sided != 0, &s);
+    FILLED(abbe_surface_samples, s, take(&ring, 300, 7, sided != 0, &s));
     assert_true(s.count <= 300 && s.count > 285);
     for (size_t i = 0; i < s.count; i++)
       for (size_t k = i + 1; k < s.count; k++)
@@ -57,11 +55,9 @@ TEST(neighbours_are_apart_and_cover) {
 
 /* All lie on the surface; shares are the whole area. */
 TEST(area_and_places) {
-  OWNED(abbe_mesh, ball) = {0};
-  OK(abbe_shape_sphere(0.02, 5, &ball, &error));
+  MADE(abbe_mesh, ball, abbe_shape_sphere(0.02, 5, &ball, &error));
   for (int ours = 0; ours < 2; ours++) {
-    OWNED(abbe_surface_samples, s) = {0};
-    take(&ball, 200, 3, ours != 0, &s);
+    FILLED(abbe_surface_samples, s, take(&ball, 200, 3, ours != 0, &s));
     double sum = 0;
     for (size_t i = 0; i < s.count; i++) {
       sum += s.share[i];
@@ -90,9 +86,8 @@ static double density_ratio(const double n[3]) {
   make_rectangle(far, u, v, 1, 1, &mesh[1]);
   const abbe_mesh *both[2] = {&mesh[0], &mesh[1]};
   for (uint64_t seed = 0; seed < 4; seed++) {
-    OWNED(abbe_surface_samples, s) = {0};
     const abbe_surface_sampling sampling = {.count = 400, .seed = seed};
-    OK(abbe_surface_samples_make(both, 2, &sampling, &s, &error));
+    MADE(abbe_surface_samples, s, abbe_surface_samples_make(both, 2, &sampling, &s, &error));
     for (size_t i = 0; i < s.count; i++) *(s.sample[i].mesh == 0 ? &flat : &tilted) += 1;
   }
   abbe_mesh_free(&mesh[0]);
@@ -150,8 +145,7 @@ static double slope(const abbe_mesh *mesh, bool ours, const double at[3], const 
   for (int k = 0; k < SIZES; k++) {
     double square = 0, count = 0;
     for (uint64_t seed = 0; seed < SEEDS; seed++) {
-      OWNED(abbe_surface_samples, s) = {0};
-      take(mesh, (size_t)16 << 2 * k, seed, ours, &s);
+      FILLED(abbe_surface_samples, s, take(mesh, (size_t)16 << 2 * k, seed, ours, &s));
       square += pow(estimate(&s, at, n, ours) / right - 1, 2) / SEEDS;
       count += (double)s.count / SEEDS;
     }
@@ -169,8 +163,7 @@ static double slope(const abbe_mesh *mesh, bool ours, const double at[3], const 
 TEST(convergence_to_a_polygon) {
   const double middle[3] = {0.05, 0.02, 0.4}, u[3] = {0, 0.8, 0.6}, v[3] = {1, 0, 0}, at[3] = {0},
                n[3] = {0, 0, 1};
-  abbe_mesh mirror = {0};
-  make_rectangle(middle, u, v, 0.4, 0.3, &mirror);
+  FILLED(abbe_mesh, mirror, make_rectangle(middle, u, v, 0.4, 0.3, &mirror));
   double facing[3];
   abbe_vector_cross(u, v, facing);
   assert_true(abbe_vector_dot(facing, middle) < 0);
@@ -180,7 +173,6 @@ TEST(convergence_to_a_polygon) {
     by[ours] = slope(&mirror, ours != 0, at, n, right, &last[ours]);
     print_message("%sslope %.2f\n", ours ? "by share: " : "", by[ours]);
   }
-  abbe_mesh_free(&mirror);
   if (SANITIZED) return; /* too few seeds tell no slope */
   /* By what is nearest to each, evenly, they are far better: a rim has its share and no more. */
   assert_true(by[1] < -0.6);
@@ -191,8 +183,7 @@ TEST(convergence_to_a_polygon) {
 TEST(a_coaxial_disk) {
   enum { AROUND = 512 };
   const double radius = 0.2, h = 0.25, at[3] = {0}, n[3] = {0, 0, 1};
-  OWNED(abbe_mesh, disk) = {0};
-  OK(abbe_mesh_make(AROUND + 1, AROUND, false, &disk, &error));
+  MADE(abbe_mesh, disk, abbe_mesh_make(AROUND + 1, AROUND, false, &disk, &error));
   for (uint32_t i = 0; i <= AROUND; i++) {
     const double angle = 2 * ABBE_PI * i / AROUND, r = i < AROUND ? radius : 0;
     const double place[3] = {r * cos(angle), r * sin(angle), h}, down[3] = {0, 0, -1};
@@ -204,8 +195,7 @@ TEST(a_coaxial_disk) {
   const double right = ABBE_PI * radius * radius / (radius * radius + h * h);
   double sum = 0;
   for (uint64_t seed = 0; seed < 4; seed++) {
-    OWNED(abbe_surface_samples, s) = {0};
-    take(&disk, 1024, seed, true, &s);
+    FILLED(abbe_surface_samples, s, take(&disk, 1024, seed, true, &s));
     sum += estimate(&s, at, n, true) / 4;
   }
   print_message("%.4f of %.4f\n", sum, right);
@@ -215,14 +205,11 @@ TEST(a_coaxial_disk) {
 /* What moves takes its samples along, so that light through them does not flicker. */
 TEST(samples_move_along) {
   static const double by[3] = {0.0078125, -0.03125, 0.00390625};
-  OWNED(abbe_mesh, ring) = {0};
-  OWNED(abbe_surface_samples, before) = {0};
-  OWNED(abbe_surface_samples, after) = {0};
-  OK(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, &error));
-  take(&ring, 200, 5, true, &before);
+  MADE(abbe_mesh, ring, abbe_shape_ring(0.03, 0.008, 64, 32, &ring, &error));
+  FILLED(abbe_surface_samples, before, take(&ring, 200, 5, true, &before));
   for (size_t i = 0; i < ring.vertex_count; i++)
     for (int c = 0; c < 3; c++) ring.position[i][c] += by[c];
-  take(&ring, 200, 5, true, &after);
+  FILLED(abbe_surface_samples, after, take(&ring, 200, 5, true, &after));
   assert_int_equal(after.count, before.count);
   for (size_t i = 0; i < before.count; i++) {
     double off[3];

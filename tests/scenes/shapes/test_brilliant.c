@@ -14,11 +14,10 @@ static size_t count_planes(const double (*plane)[4], size_t count, double z_low,
 
 TEST(has_the_faces_of_a_brilliant) {
   const abbe_brilliant cut = {.diameter = 0.01};
-  OWNED(abbe_mesh, m);
   abbe_mesh_report report;
   double plane[80][4];
   size_t count = 0;
-  OK(abbe_brilliant_make(&cut, &m, &error));
+  MADE(abbe_mesh, m, abbe_brilliant_make(&cut, &m, &error));
   OK(abbe_mesh_check(&m, &report, &error));
   assert_int_equal(report.open_edges + report.crowded_edges + report.flipped_edges, 0);
   assert_int_equal(report.degenerate_faces, 0);
@@ -37,10 +36,9 @@ TEST(has_the_faces_of_a_brilliant) {
 TEST(bezels_and_mains_have_their_angles) {
   const abbe_brilliant cut = {
       .diameter = 2, .crown_rad = 33 / DEGREES, .pavilion_rad = 41.2 / DEGREES};
-  OWNED(abbe_mesh, m);
   double plane[80][4];
   size_t count = 0, bezels = 0, mains = 0;
-  OK(abbe_brilliant_make(&cut, &m, &error));
+  MADE(abbe_mesh, m, abbe_brilliant_make(&cut, &m, &error));
   abbe_convex found;
   OK(abbe_convex_find(&m, 80, plane, NULL, &found, &error));
   assert_int_equal(found.verdict, ABBE_CONVEX_SOLID);

@@ -37,9 +37,8 @@ static void round_to(abbe_mesh *m, double step) {
 TEST(a_box_far_away_has_its_planes) {
   const double size[3] = {1, 1, 1}, offset[3] = {1000, 0, 0};
   double move[16];
-  OWNED(abbe_mesh, m);
   abbe_convex found;
-  OK(abbe_shape_box(size, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_box(size, &m, &error));
   abbe_transform_translate(offset, move);
   OK(abbe_mesh_transform(&m, move, &error));
   uint32_t plane_of[12];
@@ -60,8 +59,7 @@ TEST(a_box_far_away_has_its_planes) {
 }
 
 TEST(a_dent_is_measured_and_placed) {
-  OWNED(abbe_mesh, m);
-  OK(abbe_shape_sphere(1, 1, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_sphere(1, 1, &m, &error));
   OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
   abbe_convex found = judge(&m);
   assert_int_equal(found.verdict, ABBE_CONVEX_SOLID);
@@ -95,7 +93,7 @@ TEST(a_dent_is_measured_and_placed) {
 
 TEST(what_is_open_or_several_is_none) {
   const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{5, 0, 0}, {6, 1, 1}, false}};
-  abbe_mesh m = test_boxes(box, 2);
+  OWNED(abbe_mesh, m) = test_boxes(box, 2);
   OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
   assert_int_equal(judge(&m).verdict, ABBE_CONVEX_DENTED);
   m.face_count = 11;
@@ -103,18 +101,15 @@ TEST(what_is_open_or_several_is_none) {
   const abbe_convex found = judge(&m);
   assert_int_equal(found.verdict, ABBE_CONVEX_PARTS);
   assert_reason(&found, "not one closed surface");
-  abbe_mesh_free(&m);
 }
 
 TEST(a_ball_has_too_many_planes) {
   for (size_t levels = 3; levels <= 6; levels += 3) { /* all looked at, and by a sample */
-    abbe_mesh m;
-    OK(abbe_shape_sphere(1, levels, &m, &error));
+    MADE(abbe_mesh, m, abbe_shape_sphere(1, levels, &m, &error));
     OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
     const abbe_convex found = judge(&m);
     assert_int_equal(found.verdict, ABBE_CONVEX_MANY);
     assert_reason(&found, "more than 256 planes");
-    abbe_mesh_free(&m);
   }
 }
 
@@ -124,30 +119,27 @@ TEST(digits_of_a_file_cost_tolerance_and_no_more) {
     double step, tolerance;
   } files[] = {{1e-9, 1e-6}, {1e-7, 1e-5}, {1e-6, 1e-4}};
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
-    abbe_mesh m = brilliant();
+    OWNED(abbe_mesh, m) = brilliant();
     round_to(&m, files[i].step);
     const abbe_convex found = judge(&m);
     assert_int_equal(found.verdict, ABBE_CONVEX_SOLID);
     assert_int_equal(found.planes, 73);
     assert_near(found.tolerance, files[i].tolerance, 0);
-    abbe_mesh_free(&m);
   }
-  abbe_mesh m = brilliant();
+  OWNED(abbe_mesh, m) = brilliant();
   round_to(&m, 1e-4);
   assert_int_equal(judge(&m).verdict, ABBE_CONVEX_DENTED);
-  abbe_mesh_free(&m);
 }
 
 TEST(rounded_normals_are_no_planes) {
   const test_box box = {{0, 0, 0}, {1, 1, 1}, false};
-  abbe_mesh m = test_boxes(&box, 1); /* smooth */
+  OWNED(abbe_mesh, m) = test_boxes(&box, 1); /* smooth */
   abbe_convex found = judge(&m);
   assert_int_equal(found.verdict, ABBE_CONVEX_ROUNDED);
   assert_near(found.off, acos(sqrt(1.0 / 3)), 0.3);
   assert_reason(&found, "normals are rounded, by up to ");
   OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_AUTO, &error));
   assert_int_equal(judge(&m).verdict, ABBE_CONVEX_SOLID);
-  abbe_mesh_free(&m);
 }
 
 /* A lens of so long a focus that the triangles of its face lie within the greatest tolerance of
@@ -165,8 +157,7 @@ TEST(a_gentle_curve_is_not_cut_into_planes) {
     memcpy(closed, profile, sizeof closed);
     closed[1][0] = 0.5, closed[1][1] = 0;
     memcpy(closed + 2, profile + 1, 41 * sizeof *closed);
-    OWNED(abbe_mesh, m);
-    OK(abbe_shape_lathe((const double(*)[2])closed, 43, 96, &m, &error));
+    MADE(abbe_mesh, m, abbe_shape_lathe((const double(*)[2])closed, 43, 96, &m, &error));
     OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
     const abbe_convex found = judge(&m);
     if (found.verdict != ABBE_CONVEX_MANY && found.verdict != ABBE_CONVEX_CURVED)
@@ -182,10 +173,9 @@ TEST(thin_faces_go_with_a_plane) {
   const uint32_t face[14][3] = {{0, 2, 1}, {0, 3, 2}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7},
                                 {2, 7, 6}, {3, 0, 4}, {3, 4, 7}, {0, 1, 5}, {0, 5, 4},
                                 {4, 5, 8}, {4, 8, 7}, {8, 5, 6}, {8, 6, 7}};
-  OWNED(abbe_mesh, m);
   uint32_t plane_of[14];
   abbe_convex found;
-  OK(abbe_mesh_make(9, 14, false, &m, &error));
+  MADE(abbe_mesh, m, abbe_mesh_make(9, 14, false, &m, &error));
   memcpy(m.position, at, sizeof at);
   memcpy(m.face, face, sizeof face);
   OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
@@ -200,7 +190,7 @@ TEST(thin_faces_go_with_a_plane) {
 /* A stone drawn by hand: kites folded by a few degrees. Flattened it has the planes that it was to
  * have, is closed, and its corners have hardly moved. */
 TEST(a_stone_of_folded_kites_is_flattened) {
-  abbe_mesh m = brilliant();
+  OWNED(abbe_mesh, m) = brilliant();
   for (size_t v = 0; v < m.vertex_count;
        v++) { /* the middle of the crown's kites and the culet's */
     const double *p = m.position[v];
@@ -224,16 +214,14 @@ TEST(a_stone_of_folded_kites_is_flattened) {
   for (size_t v = 0; v < m.vertex_count; v++)
     for (size_t i = 0; i < after.planes; i++)
       assert_true(abbe_vector_dot(plane[i], m.position[v]) <= plane[i][3] + 1e-6 * after.size);
-  abbe_mesh_free(&m);
 }
 
 /* Planes that all meet in one point: only rounding says in which order. */
 TEST(points_of_many_planes_stay_closed) {
   for (size_t sides = 3; sides < 40; sides++) {
-    OWNED(abbe_mesh, m);
     abbe_mesh_report r;
     double moved = 0;
-    OK(abbe_shape_gem(sides, 1, 0.6, 0.25, 0.5, &m, &error));
+    MADE(abbe_mesh, m, abbe_shape_gem(sides, 1, 0.6, 0.25, 0.5, &m, &error));
     OK(abbe_convex_flatten(&m, 1e-4, 256, &moved, &error));
     assert_true(moved < 1e-9);
     OK(abbe_mesh_check(&m, &r, &error));
@@ -243,9 +231,8 @@ TEST(points_of_many_planes_stay_closed) {
 }
 
 TEST(what_is_no_stone_is_not_flattened) {
-  OWNED(abbe_mesh, m);
   double moved;
-  OK(abbe_shape_ring(1, 0.3, 48, 24, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_ring(1, 0.3, 48, 24, &m, &error));
   const double(*before)[3] = (const double(*)[3])m.position;
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_convex_flatten(&m, 0, 256, &moved, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_convex_flatten(&m, 0.021, 256, &moved, &error));

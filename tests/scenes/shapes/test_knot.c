@@ -5,13 +5,8 @@
 #include "scenes/mesh/mesh.h"
 #include "scenes/shapes/shape.h"
 
-static const abbe_knot plain = {.turns = 2,
-                                .coils = 3,
-                                .major = 0.05,
-                                .minor = 0.025,
-                                .radius = 0.008,
-                                .along = 400,
-                                .across = 32};
+static const abbe_knot plain = FIELDS(.turns = 2, .coils = 3, .major = 0.05, .minor = 0.025,
+                                      .radius = 0.008, .along = 400, .across = 32);
 
 static abbe_mesh_report report_of(const abbe_mesh *m) {
   abbe_mesh_report report;
@@ -38,8 +33,7 @@ static double length_of(const abbe_knot *k) {
 
 /* By Pappus: the area across times the length of the middle line. */
 TEST(a_tube_has_its_volume) {
-  OWNED(abbe_mesh, m);
-  OK(abbe_knot_make(&plain, &m, &error));
+  MADE(abbe_mesh, m, abbe_knot_make(&plain, &m, &error));
   assert_int_equal(m.face_count, 2 * 400 * 32);
   const double right = ABBE_PI * 0.008 * 0.008 * length_of(&plain);
   assert_near(report_of(&m).volume / right, 1, 0.01); /* of 32 corners for a circle: -0.0064 */

@@ -13,8 +13,7 @@ static bool is_convex(const abbe_mesh *mesh, size_t most, double (*plane)[4], si
 }
 
 TEST(sphere_has_the_faces_and_nearly_the_volume) {
-  OWNED(abbe_mesh, m);
-  OK(abbe_shape_sphere(0.05, 4, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_sphere(0.05, 4, &m, &error));
   assert_int_equal(m.face_count, 5120);
   const abbe_mesh_report r = assert_closed(&m, 0.7);
   assert_true(fabs(r.volume / (4.0 / 3.0 * ABBE_PI * 0.05 * 0.05 * 0.05) - 1) < 0.005);
@@ -25,18 +24,16 @@ TEST(sphere_has_the_faces_and_nearly_the_volume) {
 }
 
 TEST(ring_is_the_thesis_ring) {
-  OWNED(abbe_mesh, m);
-  OK(abbe_shape_ring(0.04, 0.01, 256, 128, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_ring(0.04, 0.01, 256, 128, &m, &error));
   assert_int_equal(m.face_count, 65536);
   const abbe_mesh_report r = assert_closed(&m, 0.7);
   assert_true(fabs(r.volume / (2 * ABBE_PI * ABBE_PI * 0.04 * 0.01 * 0.01) - 1) < 0.002);
 }
 
 TEST(gem_is_convex_with_nineteen_planes) {
-  OWNED(abbe_mesh, m);
   double plane[32][4];
   size_t count = 0;
-  OK(abbe_shape_gem(6, 0.05, 0.028, 0.016, 0.043, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_gem(6, 0.05, 0.028, 0.016, 0.043, &m, &error));
   assert_int_equal(m.face_count, 24);
   assert_closed(&m, 0.7);
   assert_true(is_convex(&m, 32, plane, &count));
@@ -44,10 +41,9 @@ TEST(gem_is_convex_with_nineteen_planes) {
 }
 
 TEST(prism_has_its_apex_angle) {
-  OWNED(abbe_mesh, m);
   double plane[8][4];
   size_t count = 0;
-  OK(abbe_shape_prism(ABBE_PI / 3, 0.05, 0.1, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_prism(ABBE_PI / 3, 0.05, 0.1, &m, &error));
   const abbe_mesh_report r = assert_closed(&m, 0.7);
   assert_true(fabs(r.volume - 0.05 * 0.05 * sqrt(3) / 4 * 0.1) < 1e-12);
   assert_true(fabs(r.max[2] - 0.05 * sqrt(3) / 3) < 1e-12);
@@ -63,8 +59,7 @@ TEST(prism_has_its_apex_angle) {
 
 TEST(box_and_rectangle_face_outwards) {
   const double size[3] = {1, 2, 3};
-  OWNED(abbe_mesh, m);
-  OK(abbe_shape_box(size, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_box(size, &m, &error));
   assert_true(fabs(assert_closed(&m, 0.7).volume - 6) < 1e-12);
   assert_non_null(m.uv);
   abbe_mesh_free(&m);
@@ -76,8 +71,7 @@ TEST(box_and_rectangle_face_outwards) {
 
 TEST(lathe_of_a_cylinder_keeps_its_rims_sharp) {
   const double profile[4][2] = {{0, 0}, {0.1, 0}, {0.1, 0.3}, {0, 0.3}};
-  OWNED(abbe_mesh, m);
-  OK(abbe_shape_lathe(profile, 4, 64, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_lathe(profile, 4, 64, &m, &error));
   assert_int_equal(m.face_count, 2 * 64 * 2);
   const abbe_mesh_report r = assert_closed(&m, 0.7);
   assert_true(fabs(r.volume / (ABBE_PI * 0.01 * 0.3) - 1) < 0.002);
@@ -91,8 +85,7 @@ TEST(lathe_of_an_arc_is_smooth) {
     profile[i][0] = i == 0 || i == 32 ? 0 : sin(ABBE_PI * i / 32);
     profile[i][1] = -cos(ABBE_PI * i / 32);
   }
-  OWNED(abbe_mesh, m);
-  OK(abbe_shape_lathe((const double(*)[2])profile, 33, 48, &m, &error));
+  MADE(abbe_mesh, m, abbe_shape_lathe((const double(*)[2])profile, 33, 48, &m, &error));
   assert_closed(&m, 0.7);
   for (size_t v = 0; v < m.vertex_count; v++)
     assert_true(abbe_vector_dot(m.normal[v], m.position[v]) > 0.9999);
@@ -110,9 +103,8 @@ TEST(an_open_lathe_has_rims) {
                {disk, 2, 64, ABBE_PI * 0.01},
                {bowl, 3, 3 * 64, ABBE_PI * (0.1 * hypot(0.1, 0.02) + 0.25 * hypot(0.05, 0.06))}};
   for (int i = 0; i < 3; i++) {
-    OWNED(abbe_mesh, m);
     double area = 0;
-    OK(abbe_shape_lathe(cases[i].profile, cases[i].count, 64, &m, &error));
+    MADE(abbe_mesh, m, abbe_shape_lathe(cases[i].profile, cases[i].count, 64, &m, &error));
     assert_int_equal(m.face_count, cases[i].faces);
     for (size_t f = 0; f < m.face_count; f++) {
       double n[3];

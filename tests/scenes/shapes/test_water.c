@@ -17,7 +17,7 @@ TEST(still_water_is_a_box) {
   const abbe_water water = {.size = {0.4, 0.3, 0.2}};
   double plane[8][4];
   abbe_convex found;
-  abbe_mesh mesh = make(&water);
+  OWNED(abbe_mesh, mesh) = make(&water);
   const abbe_mesh_report report = assert_closed(&mesh, 0.9);
   assert_near(report.volume, 0.4 * 0.3 * 0.2, 1e-15);
   assert_near(report.max[2], 0, 0);
@@ -25,7 +25,6 @@ TEST(still_water_is_a_box) {
   OK(abbe_convex_find(&mesh, 8, plane, NULL, &found, &error));
   assert_int_equal(found.verdict, ABBE_CONVEX_SOLID);
   assert_int_equal(found.planes, 6);
-  abbe_mesh_free(&mesh);
 }
 
 /* Long waves over little water, deep water's, and the slowest of all, which tension and gravity
@@ -55,7 +54,7 @@ TEST(a_wave_goes_its_way) {
   const abbe_water_wave wave = {0.003, length, turn, phase};
   const abbe_water water = {
       .size = {0.5, 0.5, 0.08}, .cells = {64, 64}, .time = time, .wave_count = 1, .wave = &wave};
-  abbe_mesh mesh = make(&water);
+  OWNED(abbe_mesh, mesh) = make(&water);
   const double speed = abbe_water_frequency(k, 0.08) / k;
   assert_closed(&mesh, 0.9);
   for (size_t v = 0; v < 65 * 65; v++) {
@@ -65,18 +64,14 @@ TEST(a_wave_goes_its_way) {
     assert_near(-n[0] / n[2], -0.003 * k * cos(turn) * sin(way), 1e-12);
     assert_near(-n[1] / n[2], -0.003 * k * sin(turn) * sin(way), 1e-12);
   }
-  abbe_mesh_free(&mesh);
 }
 
 static const double radius = 0.02;
 static const abbe_water_drop drop = {{0.03, -0.02}, 1.5, 0.004, radius};
 
 static abbe_mesh after(double age) {
-  const abbe_water water = {.size = {1, 1, 0.1},
-                            .cells = {320, 320},
-                            .time = drop.time + age,
-                            .drop_count = 1,
-                            .drop = &drop};
+  const abbe_water water = FIELDS(.size = {1, 1, 0.1}, .cells = {320, 320}, .time = drop.time + age,
+                                  .drop_count = 1, .drop = &drop);
   return make(&water);
 }
 
@@ -112,10 +107,10 @@ static double part_of(const abbe_mesh *mesh, double k) {
 
 /* Each part of a ring swings at its own frequency, as long as the walls are not reached. */
 TEST(rings_obey_their_relation) {
-  abbe_mesh first = after(0);
+  OWNED(abbe_mesh, first) = after(0);
   for (int i = 1; i < 5; i++) {
     const double age = 0.07 * i;
-    abbe_mesh mesh = after(age);
+    OWNED(abbe_mesh, mesh) = after(age);
     for (int m = 1; m < 6; m++) {
       const double k = 30 * m, damping = exp(-2e-6 * k * k * age);
       const double known = cos(abbe_water_frequency(k, 0.1) * age) * damping;
@@ -123,15 +118,13 @@ TEST(rings_obey_their_relation) {
       if (fabs(seen - known) > 5e-3) print_error("k %g after %g s: %g, %g\n", k, age, seen, known);
       assert_near(seen, known, 5e-3);
     }
-    abbe_mesh_free(&mesh);
   }
-  abbe_mesh_free(&first);
 }
 
 /* Any instant is computed by itself, the same each time; rain moves on. */
 TEST(rain_falls) {
   abbe_water water = {.size = {0.3, 0.2, 0.05}, .time = 7, .rain = {0.4, 0.002, 0.01, 3}};
-  abbe_mesh a = make(&water), b = make(&water);
+  OWNED(abbe_mesh, a) = make(&water), b = make(&water);
   assert_int_equal(a.vertex_count, b.vertex_count);
   assert_memory_equal(a.position, b.position, a.vertex_count * sizeof *a.position);
   assert_closed(&a, 0.9);
@@ -142,8 +135,6 @@ TEST(rain_falls) {
   for (size_t v = 0; v < a.vertex_count; v++)
     apart = fmax(apart, fabs(a.position[v][2] - b.position[v][2]));
   assert_true(apart > 1e-5 && apart < 0.01);
-  abbe_mesh_free(&a);
-  abbe_mesh_free(&b);
 }
 
 static void refuses(abbe_water water, const char *word) {

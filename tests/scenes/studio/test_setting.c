@@ -11,11 +11,10 @@
 #define WIDTH 0.0065
 
 static void load(const char *design, abbe_object *out) {
-  char path[256];
-  OWNED(abbe_cut, cut);
   OWNED(abbe_cut_polyhedron, stone);
-  snprintf(path, sizeof path, ABBE_SOURCE_DIR "/scenes/designs/%s.asc", design);
-  OK(abbe_cut_file_read_stone(path, ABBE_CUT_WELD, &cut, &stone, NULL, &error));
+  MADE(abbe_cut, cut,
+       abbe_cut_file_read_stone(printed(ABBE_SOURCE_DIR "/scenes/designs/%s.asc", design),
+                                ABBE_CUT_WELD, &cut, &stone, NULL, &error));
   const double own = fmin(stone.max[0] - stone.min[0], stone.max[1] - stone.min[1]);
   *out = (abbe_object){0};
   OK(abbe_cut_polyhedron_mesh(&cut, &stone, WIDTH / own, &out->mesh, &error));
@@ -76,8 +75,8 @@ TEST(prongs_are_counted) {
   abbe_object stone;
   load("brilliant-diamond", &stone);
   for (size_t count = 3; count <= 8; count += count == 4 ? 2 : 1) {
-    OWNED(abbe_mesh, metal) = {0};
-    OK(abbe_setting_make(&stone.mesh, &(abbe_setting){.count = count}, &metal, &error));
+    MADE(abbe_mesh, metal,
+         abbe_setting_make(&stone.mesh, &(abbe_setting){.count = count}, &metal, &error));
     closed(&metal, count + 2);
     for (size_t i = 0; i < count; i++) {
       const double a = 2 * ABBE_PI * ((double)i + 0.5) / (double)count;
@@ -102,12 +101,11 @@ TEST(volumes_are_those_of_their_sections) {
   enum { SIDES = 2048 };
   static const double r = 0.003, high = 0.002, t = 0.0006;
   const double profile[][2] = {{0, 0}, {r, 0}, {r, high}, {0, high}};
-  OWNED(abbe_mesh, stone);
-  OWNED(abbe_mesh, metal);
-  OK(abbe_shape_lathe(profile, 4, SIDES, &stone, &error));
+  MADE(abbe_mesh, stone, abbe_shape_lathe(profile, 4, SIDES, &stone, &error));
   const double gap = ABBE_SETTING_GAP * 2 * r, in = r + gap;
-  OK(abbe_setting_make(&stone, &(abbe_setting){.kind = ABBE_SETTING_PAVE, .thick = t, .count = 2},
-                       &metal, &error));
+  MADE(abbe_mesh, metal,
+       abbe_setting_make(&stone, &(abbe_setting){.kind = ABBE_SETTING_PAVE, .thick = t, .count = 2},
+                         &metal, &error));
   abbe_mesh_report report = closed(&metal, 3);
   const double side = 2 * r + t, bead = 4.0 / 3 * ABBE_PI * pow(0.35 * t, 3);
   const double plate = (side * side - ABBE_PI * in * in) * (high + 0.5 * t);
@@ -132,8 +130,8 @@ TEST(volumes_are_those_of_their_sections) {
 }
 
 TEST(what_cannot_be_set_is_refused) {
-  abbe_mesh stone, metal;
-  OK(abbe_shape_rectangle(1, 1, &stone, &error));
+  abbe_mesh metal;
+  MADE(abbe_mesh, stone, abbe_shape_rectangle(1, 1, &stone, &error));
   REFUSED(ABBE_GEOMETRY, "flat", abbe_setting_make(&stone, &(abbe_setting){0}, &metal, &error));
   abbe_mesh_free(&stone);
   OK(abbe_shape_sphere(1, 2, &stone, &error));
@@ -148,14 +146,12 @@ TEST(what_cannot_be_set_is_refused) {
   assert_true(stone.face_count > ABBE_SETTING_FACES);
   REFUSED(ABBE_UNSUPPORTED, "triangles cannot be set",
           abbe_setting_make(&stone, &(abbe_setting){0}, &metal, &error));
-  abbe_mesh_free(&stone);
 }
 
 /* A watch ends the work soon. */
 TEST(a_setting_is_watched) {
-  OWNED(abbe_mesh, stone);
   abbe_mesh metal;
-  OK(abbe_shape_sphere(1, 2, &stone, &error));
+  MADE(abbe_mesh, stone, abbe_shape_sphere(1, 2, &stone, &error));
   for (int kind = 0; kind < ABBE_SETTING_COUNT; kind++)
     for (size_t most = 0; most < 60; most += 50) {
       patience user = {.most = most};
@@ -171,22 +167,20 @@ TEST(a_setting_is_watched) {
 }
 
 static abbe_result parse(const char *stone, abbe_scene *out, abbe_error *error) {
-  char text[1024];
-  snprintf(text, sizeof text,
-           "camera: {eye: [0, -0.1, 0.1], target: [0, 0, 0]}\nenvironment: {uniform: 1}\n"
-           "objects:\n- {name: gem, shape: cut, file: oval.asc, width: 6.5mm, %s}\n",
-           stone);
+  const char *text =
+      printed("camera: {eye: [0, -0.1, 0.1], target: [0, 0, 0]}\nenvironment: {uniform: 1}\n"
+              "objects:\n- {name: gem, shape: cut, file: oval.asc, width: 6.5mm, %s}\n",
+              stone);
   return abbe_scene_parse(text, strlen(text), ABBE_SOURCE_DIR "/scenes/designs/text", NULL, out,
                           error);
 }
 
 /* Metal is an ordinary object behind its stone, moves with it, and stands where both do. */
 TEST(a_scene_sets_a_stone) {
-  OWNED(abbe_scene, scene);
-  OK(parse(
-      "material: ruby, stand: [1cm, 0, 2mm], transform: [{scale: 2}], setting: [{kind: prongs, "
-      "count: 6, metal: platinum}, {kind: band, metal: gold}]",
-      &scene, &error));
+  MADE(abbe_scene, scene,
+       parse("material: ruby, stand: [1cm, 0, 2mm], transform: [{scale: 2}], setting: [{kind: "
+             "prongs, count: 6, metal: platinum}, {kind: band, metal: gold}]",
+             &scene, &error));
   assert_int_equal(scene.object_count, 3);
   const abbe_object *stone = &scene.object[0], *claws = &scene.object[1], *band = &scene.object[2];
   assert_string_equal(claws->name, "gem's prongs");
@@ -222,18 +216,15 @@ static void put_stl(const char *path, const abbe_mesh *mesh) {
 /* A stone in millimetres that gets its width, or is scaled, has a ring of the same finger. */
 TEST(lengths_are_of_the_scene) {
   static const char *const sizes[] = {"width: 6.5mm", "fit: 6.5mm", "transform: [{scale: 1e-3}]"};
-  OWNED(abbe_mesh, ball);
-  OK(abbe_shape_sphere(3.25, 2, &ball, &error));
+  MADE(abbe_mesh, ball, abbe_shape_sphere(3.25, 2, &ball, &error));
   put_stl("setting-mm.stl", &ball);
   for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
-    OWNED(abbe_scene, scene);
-    char text[512];
-    snprintf(text, sizeof text,
-             "camera: {eye: [0, -0.1, 0.1], target: [0, 0, 0]}\nenvironment: {uniform: 1}\n"
-             "objects:\n- {name: gem, mesh: setting-mm.stl, material: ruby, %s, setting: "
-             "[{kind: band, metal: gold}, {kind: band, metal: gold, radius: 7mm, thick: 1mm}]}\n",
-             sizes[i]);
-    OK(abbe_scene_parse(text, strlen(text), "./text", NULL, &scene, &error));
+    const char *text = printed(
+        "camera: {eye: [0, -0.1, 0.1], target: [0, 0, 0]}\nenvironment: {uniform: 1}\n"
+        "objects:\n- {name: gem, mesh: setting-mm.stl, material: ruby, %s, setting: [{kind: "
+        "band, metal: gold}, {kind: band, metal: gold, radius: 7mm, thick: 1mm}]}\n",
+        sizes[i]);
+    MADE(abbe_scene, scene, abbe_scene_parse(text, strlen(text), "./text", NULL, &scene, &error));
     const double t = ABBE_SETTING_THICK * 0.0065;
     const abbe_object *band = &scene.object[1];
     assert_near(band[0].max[0] - band[0].min[0], 2 * (ABBE_SETTING_FINGER + 2 * t), 1e-4);
@@ -244,10 +235,10 @@ TEST(lengths_are_of_the_scene) {
 
 /* Metal that holds a stone is tilted with it; other mirrors stay. */
 TEST(metal_is_tilted_with_its_stone) {
-  OWNED(abbe_scene, scene);
-  OK(parse("material: ruby, setting: {kind: prongs, metal: gold}}\n"
-           "- {name: mirror, shape: box, size: [1cm, 1cm, 1mm], mirror: 0.5, stand: [0, 0, -3cm]",
-           &scene, &error));
+  MADE(abbe_scene, scene,
+       parse("material: ruby, setting: {kind: prongs, metal: gold}}\n"
+             "- {name: mirror, shape: box, size: [1cm, 1cm, 1mm], mirror: 0.5, stand: [0, 0, -3cm]",
+             &scene, &error));
   const double gap = apart(&scene.object[0], &scene.object[1]), mirror = scene.object[2].min[2];
   const double before = scene.object[1].min[2];
   OK(abbe_refractors_tilt(&scene, 0.4, 0, &error));

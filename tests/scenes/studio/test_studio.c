@@ -41,8 +41,7 @@ TEST(every_look_shows_a_stone) {
   for (int look = 0; look < ABBE_STUDIO_LOOK_COUNT; look++)
     for (int with = 0; with < ABBE_STUDIO_WITH_COUNT; with++) {
       const abbe_studio studio = {.look = (abbe_studio_look)look, .with = (abbe_studio_with)with};
-      OWNED(abbe_scene, scene);
-      load(QUARTZ, &studio, &scene);
+      FILLED(abbe_scene, scene, load(QUARTZ, &studio, &scene));
       const abbe_object *stone = called(&scene, "stone"), *table = called(&scene, "table");
       assert_non_null(stone);
       assert_string_equal(stone->material->name, "quartz");
@@ -61,16 +60,12 @@ TEST(settings_hold_every_stone) {
   for (int kind = 0; kind < ABBE_SETTING_COUNT; kind++)
     for (int ring = 0; ring < 2; ring++) {
       const char *const more[] = {OVAL};
-      const abbe_studio studio = {.setting = 1 + kind,
-                                  .with = ring ? ABBE_STUDIO_WITH_RING : ABBE_STUDIO_WITH_TABLE,
-                                  .more = more,
-                                  .more_count = !ring,
-                                  .metal = "silver"};
-      OWNED(abbe_scene, scene);
-      char name[64];
-      load(OVAL, &studio, &scene);
-      snprintf(name, sizeof name, "stone%s's %s", ring ? "" : " 1", names[kind]);
-      const abbe_object *metal = called(&scene, name);
+      const abbe_studio studio =
+          FIELDS(.setting = 1 + kind, .with = ring ? ABBE_STUDIO_WITH_RING : ABBE_STUDIO_WITH_TABLE,
+                 .more = more, .more_count = !ring, .metal = "silver");
+      FILLED(abbe_scene, scene, load(OVAL, &studio, &scene));
+      const abbe_object *metal =
+          called(&scene, printed("stone%s's %s", ring ? "" : " 1", names[kind]));
       assert_non_null(metal);
       assert_string_equal(metal->conductor->name, "silver");
       size_t holding = 0;
@@ -83,16 +78,15 @@ TEST(settings_hold_every_stone) {
       assert_near(lowest, 0, 1e-12);
       if (kind == ABBE_SETTING_CHANNEL || kind == ABBE_SETTING_PAVE)
         if (!ring) {
-          snprintf(name, sizeof name, "stone 2's %s", names[kind]);
-          assert_near(called(&scene, name)->min[0], metal->max[0], 1e-8);
+          assert_near(called(&scene, printed("stone 2's %s", names[kind]))->min[0], metal->max[0],
+                      1e-8);
         }
     }
 }
 
 TEST(width_and_stone_are_the_users) {
   const abbe_studio studio = {.width_m = 0.012, .material = "ruby"};
-  OWNED(abbe_scene, scene);
-  load(OVAL, &studio, &scene);
+  FILLED(abbe_scene, scene, load(OVAL, &studio, &scene));
   const abbe_object *stone = called(&scene, "stone");
   assert_near(stone->max[0] - stone->min[0], 0.012, 1e-12);
   assert_string_equal(stone->material->name, "ruby");
@@ -103,13 +97,10 @@ TEST(several_stand_side_by_side) {
   const char *const more[] = {OVAL, QUARTZ, OVAL, QUARTZ};
   for (size_t count = 1; count <= 4; count++) {
     const abbe_studio studio = {.more = more, .more_count = count};
-    OWNED(abbe_scene, scene);
-    load(QUARTZ, &studio, &scene);
+    FILLED(abbe_scene, scene, load(QUARTZ, &studio, &scene));
     const abbe_object *stone[5];
     for (size_t i = 0; i <= count; i++) {
-      char name[32];
-      snprintf(name, sizeof name, "stone %zu", i + 1);
-      stone[i] = called(&scene, name);
+      stone[i] = called(&scene, printed("stone %zu", i + 1));
       assert_non_null(stone[i]);
       assert_near(stone[i]->min[2], 0, 1e-15);
       for (size_t k = 0; k < i; k++)
@@ -146,15 +137,12 @@ TEST(a_saved_scene_is_the_same) {
   static const char path[] = "/tmp/abbe-test-studio.yaml";
   const abbe_studio studio = {.folder = "/tmp/", .look = ABBE_STUDIO_LOOK_velvet};
   const abbe_scene_options options = {.studio = &studio};
-  char *text;
+  FREED char *text = NULL;
   size_t size;
-  OWNED(abbe_scene, made);
-  OWNED(abbe_scene, saved);
   OK(abbe_scene_text(OVAL, &options, &text, &size, &error));
   put(path, text);
-  free(text);
-  load(OVAL, &studio, &made);
-  load(path, NULL, &saved);
+  FILLED(abbe_scene, made, load(OVAL, &studio, &made));
+  FILLED(abbe_scene, saved, load(path, NULL, &saved));
   assert_string_equal(made.description, saved.description);
   assert_memory_equal(&made.camera, &saved.camera, sizeof made.camera);
   assert_int_equal(made.object_count, saved.object_count);
@@ -168,9 +156,8 @@ TEST(a_saved_scene_is_the_same) {
 TEST(lamps_grow_with_the_stones) {
   static const abbe_studio_look looks[] = {ABBE_STUDIO_LOOK_white, ABBE_STUDIO_LOOK_dispersion};
   for (int i = 0; i < 2; i++) {
-    OWNED(abbe_scene, small);
     OWNED(abbe_scene, large);
-    load(QUARTZ, &(abbe_studio){.look = looks[i]}, &small);
+    FILLED(abbe_scene, small, load(QUARTZ, &(abbe_studio){.look = looks[i]}, &small));
     load(QUARTZ, &(abbe_studio){.look = looks[i], .width_m = 0.2}, &large);
     const abbe_light *a = &small.light[0], *b = &large.light[0];
     const double factor = b->position[2] / a->position[2];
@@ -191,9 +178,8 @@ TEST(an_index_finds_a_stone) {
       {1.54, "quartz"},   {1.577, "emerald"}, /* no clear stone is near, and no glass */
       {1.62, "topaz"},    {1.66, "peridot"},  {1.76, "sapphire"}, {2.15, "cubic-zirconia"},
       {2.417, "diamond"}, {1.1, "quartz"},    {3, "moissanite"}};
-  OWNED(abbe_material_table, table);
   const abbe_material_table none = {0};
-  OK(abbe_material_table_load(NULL, &table, &error));
+  MADE(abbe_material_table, table, abbe_material_table_load(NULL, &table, &error));
   for (size_t i = 0; i < sizeof stones / sizeof *stones; i++)
     assert_string_equal(abbe_studio_nearest(&table, stones[i].n)->name, stones[i].name);
   assert_null(abbe_studio_nearest(&none, 1.54));

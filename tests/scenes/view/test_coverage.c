@@ -9,8 +9,7 @@ static double sum_of(const abbe_image *alpha) {
 }
 
 static void make(const char *text, size_t width, size_t height, size_t samples, abbe_image *out) {
-  OWNED(abbe_scene, scene);
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   OK(abbe_coverage_make(&scene, width, height, samples, out, &error));
 }
 

@@ -62,13 +62,10 @@ static ray make_ray(const world *w, double ox, double oy, double oz, double dx, 
 }
 
 static abbe_estimate run(world *w, const ray *r, abbe_estimator kind, size_t iterations) {
-  const abbe_estimator_desc desc = {.kind = kind,
-                                    .iterations = iterations,
-                                    .step = kind == ABBE_ESTIMATOR_NEWTON ? 1e-7 : 0,
-                                    .range = kind == ABBE_ESTIMATOR_MARCH ? 2.0 : 0,
-                                    .view = &w->view,
-                                    .lookup = look,
-                                    .user = w};
+  const abbe_estimator_desc desc = FIELDS(.kind = kind, .iterations = iterations,
+                                          .step = kind == ABBE_ESTIMATOR_NEWTON ? 1e-7 : 0,
+                                          .range = kind == ABBE_ESTIMATOR_MARCH ? 2.0 : 0,
+                                          .view = &w->view, .lookup = look, .user = w);
   return abbe_estimator_run(&desc, r->o, r->d);
 }
 
@@ -240,12 +237,9 @@ TEST(newton_as_printed_stays_off) {
   for (int i = 0; i < DIRECTIONS; i++) {
     world w = make_world(false, true);
     const ray r = ray_of(&w, i);
-    const abbe_estimator_desc desc = {.kind = ABBE_ESTIMATOR_NEWTON,
-                                      .iterations = 5,
-                                      .printed = true,
-                                      .view = &w.view,
-                                      .lookup = look,
-                                      .user = &w};
+    const abbe_estimator_desc desc =
+        FIELDS(.kind = ABBE_ESTIMATOR_NEWTON, .iterations = 5, .printed = true, .view = &w.view,
+               .lookup = look, .user = &w);
     worst = fmax(worst, fabs(abbe_estimator_run(&desc, r.o, r.d).distance - r.t));
     assert_true(error_after(&w, &r, ABBE_ESTIMATOR_NEWTON, 5) < 1e-9);
   }
@@ -284,12 +278,9 @@ TEST(all_land_where_the_ray_does) {
 TEST(shah_as_printed) {
   world w = make_world(false, false);
   const ray r = ray_of(&w, 0);
-  const abbe_estimator_desc desc = {.kind = ABBE_ESTIMATOR_SHAH,
-                                    .iterations = 1,
-                                    .printed = true,
-                                    .view = &w.view,
-                                    .lookup = look,
-                                    .user = &w};
+  const abbe_estimator_desc desc =
+      FIELDS(.kind = ABBE_ESTIMATOR_SHAH, .iterations = 1, .printed = true, .view = &w.view,
+             .lookup = look, .user = &w);
   const abbe_estimate e = abbe_estimator_run(&desc, r.o, r.d);
   double at[3], seen[3], between[3], last[3];
   for (int c = 0; c < 3; c++) at[c] = r.o[c] + 1.0 * r.d[c];

@@ -138,9 +138,8 @@ static void make_image(abbe_image *out) {
 TEST(attributes_give_back_every_bit) {
   const char *host = setlocale(LC_ALL, "de_DE.UTF-8");
   for (int orthographic = 0; orthographic < 2; orthographic++) {
-    OWNED(abbe_image, image);
     abbe_map_layout layout = slanted(orthographic), back;
-    make_image(&image);
+    FILLED(abbe_image, image, make_image(&image));
     layout.view.origin[0] = -1.0 / 3e-300;
     OK(abbe_map_layout_write(&layout, "lamp", &image, &error));
     assert_string_equal(abbe_image_attribute_text(&image, "abbe:map_light"), "lamp");
@@ -215,17 +214,15 @@ TEST(impossible_layouts_are_refused) {
       break;
     }
     REFUSED(ABBE_INVALID_ARGUMENT, part, abbe_map_layout_check(&l, &error));
-    OWNED(abbe_image, image);
-    make_image(&image);
+    FILLED(abbe_image, image, make_image(&image));
     assert_int_equal(abbe_map_layout_write(&l, NULL, &image, NULL), ABBE_INVALID_ARGUMENT);
     assert_int_equal(image.attribute_count, 0);
   }
 }
 
 static void refuse(const char *name, const char *text, abbe_result code, const char *part) {
-  OWNED(abbe_image, image);
   abbe_map_layout layout = slanted(false), none = {0};
-  make_image(&image);
+  FILLED(abbe_image, image, make_image(&image));
   OK(abbe_map_layout_write(&layout, NULL, &image, &error));
   OK(abbe_image_set_attribute(&image, name, text, &error));
   REFUSED(code, part, abbe_map_layout_read(&image, "that.exr", &layout, &error));
@@ -247,9 +244,8 @@ TEST(broken_attributes_are_refused) {
     refuse("abbe:map_view", views[i], ABBE_PARSE, "view");
   refuse("abbe:map_warp_x", "0 1", ABBE_PARSE, "abbe:map_warp_x");
   refuse("abbe:map_warp_y", "", ABBE_PARSE, "abbe:map_warp_y");
-  OWNED(abbe_image, image);
   abbe_map_layout layout;
-  make_image(&image);
+  FILLED(abbe_image, image, make_image(&image));
   REFUSED(ABBE_NOT_FOUND, "no receiver map",
           abbe_map_layout_read(&image, "picture.exr", &layout, &error));
 }

@@ -41,36 +41,33 @@ static double sum_of(const abbe_image *image, size_t channel) {
 TEST(the_same_layout_gives_the_same_map) {
   for (int orthographic = 0; orthographic < 2; orthographic++) {
     abbe_map_layout layout = layout_of(orthographic, 0.2, 0.3, 0.5);
-    abbe_image from = map_of(&layout, 16), to = {0};
+    OWNED(abbe_image, from) = map_of(&layout, 16);
     for (size_t i = 0; i < 16 * 16 * 3; i++) from.data[i] = (float)(i % 37);
-    OK(abbe_map_resample(&from, "a", &layout, 16, 16, 3, &to, &error));
+    MADE(abbe_image, to, abbe_map_resample(&from, "a", &layout, 16, 16, 3, &to, &error));
     for (size_t i = 0; i < 16 * 16 * 3; i++) assert_near(to.data[i], from.data[i], 1e-5);
     assert_string_equal(abbe_image_attribute_text(&to, "abbe:map_light"), "lamp");
-    abbe_image_free(&from);
-    abbe_image_free(&to);
   }
 }
 
 TEST(light_is_kept_in_a_wider_window_and_lost_outside_a_narrow_one) {
   abbe_map_layout own = layout_of(false, 0, 0, 0.4), wide = layout_of(false, 0.15, 0.4, 0.8);
   abbe_map_layout half = layout_of(false, 0, 0, 0.2);
-  abbe_image from = map_of(&own, 32), to = {0};
+  OWNED(abbe_image, from) = map_of(&own, 32);
   for (size_t i = 0; i < 32 * 32 * 3; i++) from.data[i] = (float)(1 + i % 3);
-  OK(abbe_map_resample(&from, "a", &wide, 20, 12, 4, &to, &error));
+  MADE(abbe_image, to, abbe_map_resample(&from, "a", &wide, 20, 12, 4, &to, &error));
   for (size_t c = 0; c < 3; c++) assert_near(sum_of(&to, c), sum_of(&from, c), 1e-2);
   abbe_image_free(&to);
   /* Half as wide and half as high: a quarter of the light, spread evenly. */
   OK(abbe_map_resample(&from, "a", &half, 8, 8, 4, &to, &error));
   assert_near(sum_of(&to, 0), 0.25 * sum_of(&from, 0), 1e-3);
   for (size_t i = 0; i < 64; i++) assert_near(to.data[3 * i], 4, 1e-5);
-  abbe_image_free(&to);
-  abbe_image_free(&from);
 }
 
 /* A bright texel lands where its ray meets the other layout, worked out through the world. */
 TEST(light_lands_where_it_belongs) {
   abbe_map_layout own = layout_of(false, 0.3, 0.5, 0.6), other = layout_of(false, 0.1, 0.2, 1.2);
-  abbe_image from = map_of(&own, 64), to = {0};
+  OWNED(abbe_image, from) = map_of(&own, 64);
+  abbe_image to = {0};
   static const size_t places[][2] = {{3, 60}, {32, 32}, {50, 7}};
   for (size_t i = 0; i < 3; i++) {
     size_t x = places[i][0], y = places[i][1], column, row;
@@ -86,12 +83,12 @@ TEST(light_lands_where_it_belongs) {
     assert_near(sum_of(&to, 1), 5, 1e-6);
     abbe_image_free(&to);
   }
-  abbe_image_free(&from);
 }
 
 TEST(what_is_refused) {
   abbe_map_layout own = layout_of(false, 0, 0, 0.4), moved = own;
-  abbe_image from = map_of(&own, 8), to = {0}, bare = {0};
+  OWNED(abbe_image, from) = map_of(&own, 8);
+  abbe_image to = {0};
   static const char *const names[] = {"Y"};
   moved.view.origin[0] = 0.1;
   REFUSED(ABBE_INVALID_ARGUMENT, "a.exr",
@@ -102,9 +99,7 @@ TEST(what_is_refused) {
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_map_resample(&from, "a", &own, 8, 8, 0, &to, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_map_resample(&from, "a", &own, 8, 8, 65, &to, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_map_resample(&from, "a", &own, 0, 8, 2, &to, &error));
-  OK(abbe_image_make(8, 8, 1, names, &bare, &error));
+  MADE(abbe_image, bare, abbe_image_make(8, 8, 1, names, &bare, &error));
   REFUSED(ABBE_NOT_FOUND, "", abbe_map_resample(&bare, "a", &own, 8, 8, 2, &to, &error));
   assert_null(to.data);
-  abbe_image_free(&bare);
-  abbe_image_free(&from);
 }

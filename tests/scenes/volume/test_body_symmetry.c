@@ -11,12 +11,9 @@
   ", transform: [{rotate: {axis: [1, 2, 3], angle: 40}}, {translate: [0.1, 0, 0.5]}]}\n"
 
 static void find(const char *object, abbe_body_symmetry *out) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_volume_body body;
   abbe_volume_place place;
-  char text[2048];
-  snprintf(text, sizeof text, "%s%s", SUNNY, object);
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(printed("%s%s", SUNNY, object));
   OK(abbe_volume_body_make(&scene.object[1], &body, &error));
   OK(abbe_volume_body_find(&body, &scene.object[1], &place, &error));
   OK(abbe_body_symmetry_find(&scene.object[1], place.centre, body.radius, out, &error));
@@ -39,17 +36,16 @@ TEST(orders_of_known_groups) {
       {"- {name: ball, shape: sphere, radius: 0.1, material: flat" TURNED, 1},
   };
   for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
-    abbe_body_symmetry s;
-    find(known[i].object, &s);
+    FILLED(abbe_body_symmetry, s, find(known[i].object, &s));
     print_message("%zu: %zu maps\n", i, s.count);
     assert_int_equal(s.count, known[i].order);
-    abbe_body_symmetry_free(&s);
   }
 }
 
 /* All images of a direction are brought to one place, by orthogonal maps. */
 TEST(images_are_brought_together) {
-  abbe_body_symmetry s, copy;
+  OWNED(abbe_body_symmetry, s) = {0};
+  abbe_body_symmetry copy;
   uint64_t seed = 5;
   find("- {name: cube, shape: box, size: [0.1, 0.1, 0.1], material: flat" TURNED, &s);
   for (int i = 0; i < 50; i++) {
@@ -74,5 +70,4 @@ TEST(images_are_brought_together) {
                    ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_body_symmetry_make(1, (const double(*)[9]) & s.map[1], &copy, NULL),
                    ABBE_INVALID_ARGUMENT);
-  abbe_body_symmetry_free(&s);
 }

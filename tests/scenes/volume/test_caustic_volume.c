@@ -29,8 +29,7 @@ TEST(halves) {
 /* Under a node's own light, in a cell's middle of a grid. */
 TEST(a_node_and_a_cell_are_what_is_stored) {
   for (int lookup = ABBE_VOLUME_LOOKUP_NEAREST; lookup < ABBE_VOLUME_LOOKUP_COUNT; lookup++) {
-    OWNED(abbe_caustic_volume, v);
-    make_volume(ABBE_VOLUME_VECTOR, grid, 42, false, &v);
+    FILLED(abbe_caustic_volume, v, make_volume(ABBE_VOLUME_VECTOR, grid, 42, false, &v));
     for (size_t node = 0; node < 42; node += 5)
       for (size_t cell = 0; cell < v.region.cells; cell += 777) {
         abbe_volume_sight sight;
@@ -75,8 +74,7 @@ TEST(turns_are_exact_for_a_ball) {
   double blended[2];
   static const size_t counts[] = {12, 162, 1};
   for (int i = 0; i < 3; i++) {
-    OWNED(abbe_caustic_volume, v);
-    make_volume(ABBE_VOLUME_VECTOR, shells, counts[i], true, &v);
+    FILLED(abbe_caustic_volume, v, make_volume(ABBE_VOLUME_VECTOR, shells, counts[i], true, &v));
     const double cells = ball_error(&v, ABBE_VOLUME_LOOKUP_TURN, true);
     const double turned = ball_error(&v, ABBE_VOLUME_LOOKUP_TURN, false);
     assert_true(turned < 1.25 * cells);
@@ -87,8 +85,7 @@ TEST(turns_are_exact_for_a_ball) {
 }
 
 TEST(a_ball_is_turned_by_itself) {
-  OWNED(abbe_caustic_volume, v);
-  make_volume(ABBE_VOLUME_VECTOR, triangles, 12, true, &v);
+  FILLED(abbe_caustic_volume, v, make_volume(ABBE_VOLUME_VECTOR, triangles, 12, true, &v));
   assert_int_equal(abbe_caustic_volume_resolve(&v, ABBE_VOLUME_LOOKUP_AUTO),
                    ABBE_VOLUME_LOOKUP_TURN);
   v.body.ball = false;
@@ -99,11 +96,9 @@ TEST(a_ball_is_turned_by_itself) {
 /* No value is off by more than the tolerance, and fewer bytes hold them. */
 TEST(joint_cells) {
   const abbe_region_desc small = {.kind = ABBE_REGION_GRID, .side = 16, .outer = 3};
-  OWNED(abbe_caustic_volume, v);
-  OWNED(abbe_caustic_volume, joint);
   size_t same = 0, bytes = 0;
-  make_volume(ABBE_VOLUME_VECTOR, small, 12, false, &v);
-  make_volume(ABBE_VOLUME_VECTOR, small, 12, false, &joint);
+  FILLED(abbe_caustic_volume, v, make_volume(ABBE_VOLUME_VECTOR, small, 12, false, &v));
+  FILLED(abbe_caustic_volume, joint, make_volume(ABBE_VOLUME_VECTOR, small, 12, false, &joint));
   OK(abbe_caustic_volume_join(&joint, 0, &same, &error));
   assert_memory_equal(joint.value, v.value, 12 * v.region.cells * 18);
   OK(abbe_caustic_volume_join(&joint, 6, &bytes, &error));
@@ -116,9 +111,8 @@ TEST(joint_cells) {
 TEST(beyond_the_region) {
   const abbe_region_desc all[] = {grid, shells, triangles};
   for (int i = 0; i < 3; i++) {
-    OWNED(abbe_caustic_volume, v);
     OWNED(abbe_caustic_volume, printed);
-    make_volume(ABBE_VOLUME_VECTOR, all[i], 12, false, &v);
+    FILLED(abbe_caustic_volume, v, make_volume(ABBE_VOLUME_VECTOR, all[i], 12, false, &v));
     make_volume(ABBE_VOLUME_PRINTED, all[i], 12, false, &printed);
     abbe_volume_sight sight;
     const double l[3] = {0.6, 0, 0.8}, rim[3] = {1.2, 0.9, -2.999999},
@@ -143,9 +137,8 @@ TEST(beyond_the_region) {
 }
 
 TEST(too_many_values_are_refused) {
-  OWNED(abbe_caustic_volume, v) = {0};
   const abbe_region_desc large = {.kind = ABBE_REGION_GRID, .side = 256, .outer = 1};
-  OK(abbe_volume_region_make(&large, &v.region, &error));
+  MADE(abbe_caustic_volume, v, abbe_volume_region_make(&large, &v.region, &error));
   OK(abbe_light_nodes_make(162, (const double[3]){0, 0, 1}, &v.nodes, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "fewer", abbe_caustic_volume_allocate(&v, &error));
 }

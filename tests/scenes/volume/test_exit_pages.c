@@ -21,7 +21,7 @@ typedef struct bench {
 /* Points on the plate's upper side, which let light straight through to the lower. */
 static void make_bench(size_t across, bench *b) {
   *b = (bench){0};
-  load_text(PLATE, &b->scene);
+  b->scene = scene_of(PLATE);
   abbe_caustic_volume *v = &b->volume;
   *v = (abbe_caustic_volume){.kind = ABBE_VOLUME_EXITS, .min_nm = 380, .max_nm = 780};
   const abbe_region_desc region = {.side = 2, .outer = 1};
@@ -60,18 +60,15 @@ static void make_bench(size_t across, bench *b) {
     }
 }
 
-static void free_bench(bench *b) {
+static void bench_free(bench *b) {
   abbe_caustic_volume_free(&b->volume);
   abbe_scene_free(&b->scene);
 }
 
 static void make_pages(const bench *b, const double (*sheets)[9], size_t count,
                        const abbe_light *light, abbe_exit_pages *out) {
-  const abbe_exit_light_desc desc = {.light = light,
-                                     .object = &b->scene.object[1],
-                                     .place = &b->place,
-                                     .min_nm = 380,
-                                     .max_nm = 780};
+  const abbe_exit_light_desc desc = FIELDS(.light = light, .object = &b->scene.object[1],
+                                           .place = &b->place, .min_nm = 380, .max_nm = 780);
   OK(abbe_exit_pages_make(&b->volume, &desc, sheets, count, 64, out, &error));
 }
 
@@ -81,9 +78,8 @@ static const double floor_below[9] = {-1, -1, 0, 2, 0, 0, 0, 2, 0};
  * sun's colour: of clear glass, of a mirror of one reflectance, and of a metal whose rays have
  * their own wavelengths. */
 static void check_beam(bool mirror, bool metal) {
-  bench b;
-  abbe_exit_pages pages;
-  make_bench(120, &b);
+  OWNED(abbe_exit_pages, pages) = {0};
+  FILLED(bench, b, make_bench(120, &b));
   static const abbe_material any = {0};
   b.scene.object[1].mirror = mirror;
   b.scene.object[1].conductor = metal ? &any : NULL;
@@ -104,8 +100,6 @@ static void check_beam(bool mirror, bool metal) {
     }
   }
   b.scene.object[1].conductor = NULL;
-  abbe_exit_pages_free(&pages);
-  free_bench(&b);
 }
 
 TEST(a_beam_on_a_floor) {
@@ -116,9 +110,8 @@ TEST(a_beam_on_a_floor) {
 
 /* A roof over half of the floor takes what is above it, on its upper side. */
 TEST(the_first_sheet_takes_it) {
-  bench b;
-  abbe_exit_pages pages;
-  make_bench(40, &b);
+  OWNED(abbe_exit_pages, pages) = {0};
+  FILLED(bench, b, make_bench(40, &b));
   const double *d = b.scene.light[0].direction;
   const double middle = 0.1 - d[0] / d[2] * 0.29; /* of the beam at the roof's height */
   double sheets[2][9] = {{0}, {middle, -1, 0.2, 0, 2, 0, 2, 0, 0}};
@@ -135,29 +128,23 @@ TEST(the_first_sheet_takes_it) {
   assert_near(sum[0] + sum[3], pages.flux, 1e-6);
   assert_near(sum[3] / pages.flux, 0.5, 0.02);
   assert_near(sum[1] + sum[2], 0, 0);
-  abbe_exit_pages_free(&pages);
-  free_bench(&b);
 }
 
 /* A lid over half of the plate hides the sun from that half. */
 TEST(what_hides_the_light) {
-  bench b;
-  abbe_exit_pages pages;
-  make_bench(40, &b);
+  OWNED(abbe_exit_pages, pages) = {0};
+  FILLED(bench, b, make_bench(40, &b));
   const double *d = b.scene.light[0].direction;
   const double middle = 0.1 + d[0] / d[2] * 0.2; /* over the plate's, on the way to the sun */
   double sheets[2][9] = {{0}, {middle, -1, 0.71, 0, 2, 0, 2, 0, 0}};
   memcpy(sheets[0], floor_below, sizeof floor_below);
   make_pages(&b, (const double(*)[9])sheets, 2, &b.scene.light[0], &pages);
   assert_near(pages.flux, 0.25 * 0.04 * -d[2], 2e-4);
-  abbe_exit_pages_free(&pages);
-  free_bench(&b);
 }
 
 TEST(requests) {
-  bench b;
   abbe_exit_pages pages;
-  make_bench(4, &b);
+  FILLED(bench, b, make_bench(4, &b));
   const abbe_exit_light_desc desc = {
       .light = &b.scene.light[0], .object = &b.scene.object[1], .place = &b.place};
   assert_int_equal(abbe_exit_pages_make(&b.volume, &desc, (const double(*)[9]) & floor_below, 1, 0,
@@ -167,5 +154,4 @@ TEST(requests) {
   assert_int_equal(abbe_exit_pages_make(&b.volume, &desc, (const double(*)[9]) & floor_below, 1, 8,
                                         &pages, NULL),
                    ABBE_INVALID_ARGUMENT);
-  free_bench(&b);
 }

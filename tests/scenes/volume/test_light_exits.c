@@ -185,13 +185,12 @@ TEST(chances_and_points) {
 }
 
 TEST(requests) {
-  abbe_light_nodes one, nodes;
   abbe_light_exits exits;
   abbe_exit_halves point = {0};
   const abbe_exit_halves *p = (const abbe_exit_halves *)&point;
   const double up[3] = {0, 0, 1};
-  OK(abbe_light_nodes_make(1, up, &one, &error));
-  OK(abbe_light_nodes_make(12, up, &nodes, &error));
+  MADE(abbe_light_nodes, one, abbe_light_nodes_make(1, up, &one, &error));
+  MADE(abbe_light_nodes, nodes, abbe_light_nodes_make(12, up, &nodes, &error));
   assert_int_equal(abbe_light_exits_make(&one, 1, p, NULL, 1, 1, 1, &exits, NULL),
                    ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_light_exits_make(&nodes, 0, p, NULL, 1, 1, 1, &exits, NULL),
@@ -201,6 +200,4 @@ TEST(requests) {
   assert_int_equal(
       abbe_light_exits_make(&nodes, ABBE_LIGHT_EXITS_MOST + 1, p, NULL, 1, 1, 1, &exits, NULL),
       ABBE_INVALID_ARGUMENT);
-  abbe_light_nodes_free(&one);
-  abbe_light_nodes_free(&nodes);
 }

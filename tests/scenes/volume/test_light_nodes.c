@@ -11,8 +11,7 @@ TEST(weights_sum_to_one_and_lie_along_the_light) {
   static const size_t counts[] = {12, 42, 162, 642};
   uint64_t seed = 3;
   for (size_t n = 0; n < 4; n++) {
-    abbe_light_nodes nodes;
-    OK(abbe_light_nodes_make(counts[n], up, &nodes, &error));
+    MADE(abbe_light_nodes, nodes, abbe_light_nodes_make(counts[n], up, &nodes, &error));
     assert_int_equal(nodes.count, counts[n]);
     for (int i = 0; i < 2000; i++) {
       double l[3], sum[3] = {0}, all = 0, best = -2;
@@ -32,13 +31,11 @@ TEST(weights_sum_to_one_and_lie_along_the_light) {
       assert_int_equal(one.count, 1);
       assert_near(abbe_vector_dot(nodes.direction[one.node[0]], l), best, 1e-12);
     }
-    abbe_light_nodes_free(&nodes);
   }
 }
 
 TEST(at_a_node_it_is_alone) {
-  abbe_light_nodes nodes;
-  OK(abbe_light_nodes_make(162, up, &nodes, &error));
+  MADE(abbe_light_nodes, nodes, abbe_light_nodes_make(162, up, &nodes, &error));
   for (size_t i = 0; i < nodes.count; i++) {
     abbe_node_blend b;
     double weight = 0;
@@ -46,7 +43,6 @@ TEST(at_a_node_it_is_alone) {
     for (size_t k = 0; k < b.count; k++) weight += b.node[k] == i ? b.weight[k] : 0;
     assert_near(weight, 1, 1e-12);
   }
-  abbe_light_nodes_free(&nodes);
 }
 
 TEST(turns_bring_the_light_to_the_node) {

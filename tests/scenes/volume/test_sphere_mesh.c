@@ -22,21 +22,18 @@ static void random_direction(uint64_t *seed, double d[3]) {
 
 TEST(faces_cover_the_sphere_once) {
   for (int kind = 0; kind < 7; kind++) {
-    abbe_sphere_mesh m;
-    make(kind, &m);
+    FILLED(abbe_sphere_mesh, m, make(kind, &m));
     assert_int_equal(m.face_count, kind < 4 ? 20 << 2 * kind : 2 * 36 * (kind - 3) * (kind - 3));
     double sum = 0;
     for (size_t f = 0; f < m.face_count; f++) sum += abbe_sphere_mesh_area(&m, f);
     assert_near(sum, 4 * ABBE_PI, 1e-11);
-    abbe_sphere_mesh_free(&m);
   }
 }
 
 /* Beyond each edge lies the face that has it, the other way round. */
 TEST(neighbours_share_an_edge) {
   for (int kind = 0; kind < 7; kind++) {
-    abbe_sphere_mesh m;
-    make(kind, &m);
+    FILLED(abbe_sphere_mesh, m, make(kind, &m));
     for (size_t f = 0; f < m.face_count; f++)
       for (int k = 0; k < 3; k++) {
         const size_t next = m.next[f][k];
@@ -46,15 +43,13 @@ TEST(neighbours_share_an_edge) {
                    m.face[next][(j + 1) % 3] == m.face[f][k] && m.next[next][j] == f;
         assert_int_equal(found, 1);
       }
-    abbe_sphere_mesh_free(&m);
   }
 }
 
 TEST(a_direction_lies_inside_the_face_that_is_found) {
   uint64_t seed = 1;
   for (int kind = 0; kind < 7; kind++) {
-    abbe_sphere_mesh m;
-    make(kind, &m);
+    FILLED(abbe_sphere_mesh, m, make(kind, &m));
     size_t beside = 0;
     for (int i = 0; i < 5000; i++) {
       double d[3], sum[3] = {0}, weight[3], across[3];
@@ -71,13 +66,11 @@ TEST(a_direction_lies_inside_the_face_that_is_found) {
     }
     /* the table's texels are a quarter of a face wide: it errs beside edges alone */
     assert_true(beside < 2000);
-    abbe_sphere_mesh_free(&m);
   }
 }
 
 TEST(the_table_is_exact_in_the_middle_of_its_texels) {
-  abbe_sphere_mesh m;
-  make(3, &m);
+  FILLED(abbe_sphere_mesh, m, make(3, &m));
   for (size_t i = 0; i < m.table_side * m.table_side; i++) {
     const double side = (double)m.table_side;
     double uv[2] = {((double)(i % m.table_side) + 0.5) / side * 2 - 1,
@@ -89,15 +82,13 @@ TEST(the_table_is_exact_in_the_middle_of_its_texels) {
     assert_near(back[1], uv[1], 1e-12);
     for (int k = 0; k < 3; k++) assert_true(abbe_vector_dot(m.edge[m.table[i]][k], d) >= -1e-12);
   }
-  abbe_sphere_mesh_free(&m);
 }
 
 /* Two triangles are the texel that the map has there. */
 TEST(octahedral_faces_are_texels) {
   uint64_t seed = 7;
   const size_t side = 12;
-  abbe_sphere_mesh m;
-  OK(abbe_sphere_mesh_octahedral(side, &m, &error));
+  MADE(abbe_sphere_mesh, m, abbe_sphere_mesh_octahedral(side, &m, &error));
   for (int i = 0; i < 5000; i++) {
     double d[3], uv[2];
     random_direction(&seed, d);
@@ -106,7 +97,6 @@ TEST(octahedral_faces_are_texels) {
     if (fmin(fabs(x - round(x)), fabs(y - round(y))) < 1e-9) continue;
     assert_int_equal(abbe_sphere_mesh_find(&m, d) / 2, (size_t)y * side + (size_t)x);
   }
-  abbe_sphere_mesh_free(&m);
 }
 
 TEST(limits_are_told) {

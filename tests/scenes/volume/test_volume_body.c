@@ -16,9 +16,8 @@
       "[{translate: [-0.2, 0.1, 0.2]}]}\n"
 
 TEST(motion_is_found) {
-  OWNED(abbe_scene, scene) = {0};
   static const double axis[3] = {1, -2, 0.5}, offset[3] = {0.1, -0.2, 0.3};
-  load_text(SCENE, &scene);
+  OWNED(abbe_scene, scene) = scene_of(SCENE);
   for (size_t i = 1; i < 3; i++) {
     abbe_volume_body body;
     abbe_volume_place first, then;
@@ -44,8 +43,7 @@ TEST(motion_is_found) {
 }
 
 TEST(the_ball_around_it_holds_it) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(SCENE, &scene);
+  OWNED(abbe_scene, scene) = scene_of(SCENE);
   for (size_t i = 1; i < 3; i++) {
     abbe_volume_body body;
     abbe_volume_place place;
@@ -62,10 +60,9 @@ TEST(the_ball_around_it_holds_it) {
 }
 
 TEST(others_are_told_apart) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_volume_body wedge, ball;
   abbe_volume_place place;
-  load_text(SCENE, &scene);
+  OWNED(abbe_scene, scene) = scene_of(SCENE);
   REFUSED(ABBE_INVALID_ARGUMENT, "receiver",
           abbe_volume_body_make(&scene.object[0], &wedge, &error));
   OK(abbe_volume_body_make(&scene.object[1], &wedge, &error));

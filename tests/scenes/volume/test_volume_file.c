@@ -15,12 +15,11 @@ static const abbe_region_desc regions[] = {
 TEST(files_give_volumes_back) {
   for (int i = 0; i < 12; i++) {
     OWNED(abbe_caustic_volume, v);
-    OWNED(abbe_caustic_volume, back);
     const size_t nodes = i / 3 % 2 != 0 ? 12 : 1;
     make_volume(i < 6 ? ABBE_VOLUME_VECTOR : ABBE_VOLUME_PRINTED, regions[i % 3], nodes, i % 2 != 0,
                 &v);
     OK(abbe_volume_file_write(path, &v, &error));
-    OK(abbe_volume_file_read(path, &back, &error));
+    MADE(abbe_caustic_volume, back, abbe_volume_file_read(path, &back, &error));
     assert_int_equal(back.kind, v.kind);
     const abbe_region_desc *a = &back.region.desc, *b = &v.region.desc;
     assert_true(a->kind == b->kind && a->side == b->side && a->levels == b->levels &&
@@ -84,9 +83,8 @@ TEST(files_give_rays_back) {
                                           {"abbe:volume_nodes", "1 along 0 0 1"},
                                           {"abbe:volume", "vector"}};
   for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
-    OWNED(abbe_image, image) = {0};
     OK(abbe_volume_file_write(path, &v, &error));
-    OK(abbe_exr_read(path, &image, &error));
+    MADE(abbe_image, image, abbe_exr_read(path, &image, &error));
     OK(abbe_image_set_attribute(&image, broken[i][0], broken[i][1], &error));
     OK(abbe_exr_write_half(path, &image, &error));
     REFUSED(ABBE_PARSE, path, abbe_volume_file_read(path, &back, &error));
@@ -96,15 +94,14 @@ TEST(files_give_rays_back) {
 }
 
 /* A good file with one attribute changed. */
-static abbe_result read_with(const char *name, const char *text, abbe_error *error) {
+static abbe_result read_with(const char *name, const char *text, abbe_error *why) {
   abbe_caustic_volume v, back;
-  OWNED(abbe_image, image) = {0};
   make_volume(ABBE_VOLUME_PRINTED, regions[1], 12, false, &v);
-  assert_int_equal(abbe_volume_file_write(path, &v, NULL), ABBE_OK);
-  assert_int_equal(abbe_exr_read(path, &image, NULL), ABBE_OK);
-  assert_int_equal(abbe_image_set_attribute(&image, name, text, NULL), ABBE_OK);
-  assert_int_equal(abbe_exr_write_half(path, &image, NULL), ABBE_OK);
-  const abbe_result result = abbe_volume_file_read(path, &back, error);
+  OK(abbe_volume_file_write(path, &v, &error));
+  MADE(abbe_image, image, abbe_exr_read(path, &image, &error));
+  OK(abbe_image_set_attribute(&image, name, text, &error));
+  OK(abbe_exr_write_half(path, &image, &error));
+  const abbe_result result = abbe_volume_file_read(path, &back, why);
   if (result == ABBE_OK) abbe_caustic_volume_free(&back);
   abbe_caustic_volume_free(&v);
   unlink(path);
@@ -141,12 +138,10 @@ TEST(broken_attributes_are_told) {
 
 TEST(other_pictures_are_no_volumes) {
   static const char *const names[] = {"R", "G", "B"};
-  abbe_image image = {0};
   abbe_caustic_volume v;
-  OK(abbe_image_make(4, 4, 3, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(4, 4, 3, names, &image, &error));
   OK(abbe_exr_write(path, &image, &error));
   REFUSED(ABBE_NOT_FOUND, "abbe volume", abbe_volume_file_read(path, &v, &error));
-  abbe_image_free(&image);
   unlink(path);
   REFUSED(ABBE_IO, "", abbe_volume_file_read(path, &v, &error));
 }
@@ -155,15 +150,13 @@ TEST(other_pictures_are_no_volumes) {
 TEST(broken_values_are_told) {
   static const float wrong[] = {NAN, INFINITY, 0.5f, 256, -1};
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-    abbe_caustic_volume v, back;
-    OWNED(abbe_image, image) = {0};
-    make_volume(ABBE_VOLUME_PRINTED, regions[0], 1, true, &v);
+    abbe_caustic_volume back;
+    FILLED(abbe_caustic_volume, v, make_volume(ABBE_VOLUME_PRINTED, regions[0], 1, true, &v));
     OK(abbe_volume_file_write(path, &v, &error));
-    OK(abbe_exr_read(path, &image, &error));
+    MADE(abbe_image, image, abbe_exr_read(path, &image, &error));
     image.data[7] = wrong[i];
     OK(abbe_exr_write(path, &image, &error));
     REFUSED(ABBE_PARSE, "channel", abbe_volume_file_read(path, &back, &error));
-    abbe_caustic_volume_free(&v);
   }
   unlink(path);
 }

@@ -18,8 +18,7 @@ static void make(size_t i, abbe_volume_region *out) {
 
 TEST(cells_fill_the_region) {
   for (size_t i = 0; i < REGIONS; i++) {
-    OWNED(abbe_volume_region, r);
-    make(i, &r);
+    FILLED(abbe_volume_region, r, make(i, &r));
     double sum = 0;
     for (size_t cell = 0; cell < r.cells; cell++) {
       double p[3];
@@ -58,8 +57,7 @@ TEST(rays_are_cut_at_the_cells) {
   static abbe_region_piece piece[ABBE_REGION_MOST_PIECES];
   uint64_t seed = 11;
   for (size_t i = 0; i < REGIONS; i++) {
-    OWNED(abbe_volume_region, r);
-    make(i, &r);
+    FILLED(abbe_volume_region, r, make(i, &r));
     for (int n = 0; n < 4000; n++) {
       double o[3], d[3], sum = 0;
       for (int k = 0; k < 3; k++) o[k] = random_between(&seed, -5, 5);
@@ -80,8 +78,7 @@ TEST(pieces_lie_in_their_cells) {
   static abbe_region_piece piece[ABBE_REGION_MOST_PIECES];
   uint64_t seed = 12;
   for (size_t i = 0; i < REGIONS; i++) {
-    OWNED(abbe_volume_region, r) = {0};
-    make(i, &r);
+    FILLED(abbe_volume_region, r, make(i, &r));
     for (int n = 0; n < 2000; n++) {
       double o[3], d[3], p[3], t = 0;
       random_unit(&seed, d);
@@ -109,8 +106,7 @@ TEST(rays_along_edges_end) {
   static abbe_region_piece piece[ABBE_REGION_MOST_PIECES];
   static const double ways[][3] = {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0.6, 0.8, 0}};
   for (size_t i = 0; i < REGIONS; i++) {
-    OWNED(abbe_volume_region, r);
-    make(i, &r);
+    FILLED(abbe_volume_region, r, make(i, &r));
     for (size_t w = 0; w < 4; w++) {
       const double o[3] = {-4 * ways[w][0], -4 * ways[w][1], -4 * ways[w][2]};
       const size_t count = abbe_volume_region_walk(&r, o, ways[w], INFINITY, piece);
@@ -128,8 +124,7 @@ TEST(areas_across_a_beam) {
   static abbe_region_piece piece[ABBE_REGION_MOST_PIECES];
   const double d[3] = {0.48, 0.6, 0.64}, x[3] = {0.8, 0, -0.6}, y[3] = {-0.36, 0.8, -0.48};
   for (size_t i = 0; i < REGIONS; i++) {
-    OWNED(abbe_volume_region, r);
-    make(i, &r);
+    FILLED(abbe_volume_region, r, make(i, &r));
     FREED unsigned *met = calloc(r.cells, sizeof *met), *last = calloc(r.cells, sizeof *last);
     for (unsigned n = 0; n < SIDE * SIDE; n++) {
       const double u = ((n % SIDE + 0.5) / SIDE - 0.5) * 11,
@@ -178,14 +173,12 @@ static double linear_error(const abbe_volume_region *r) {
 /* On a grid it is kept; on shells as far as cells are flat: finer ones are nearer. */
 TEST(weights_between_cells) {
   for (size_t i = 0; i < REGIONS; i++) {
-    OWNED(abbe_volume_region, r);
-    OWNED(abbe_volume_region, fine);
     abbe_region_desc desc = regions[i];
-    make(i, &r);
+    FILLED(abbe_volume_region, r, make(i, &r));
     desc.side *= 4;
     desc.levels += 2;
     desc.shells *= 4;
-    OK(abbe_volume_region_make(&desc, &fine, &error));
+    MADE(abbe_volume_region, fine, abbe_volume_region_make(&desc, &fine, &error));
     if (i == 0) assert_near(linear_error(&r), 0, 1e-12);
     if (i > 0) assert_true(linear_error(&fine) < 0.35 * linear_error(&r));
   }

@@ -11,9 +11,7 @@ static const abbe_region_desc regions[] = {
 TEST(trees) {
   static const double tolerances[] = {0, 0.5, 4, 1000};
   for (int i = 0; i < 3; i++) {
-    OWNED(abbe_caustic_volume, v) = {0};
-    abbe_volume_order order;
-    make_volume(ABBE_VOLUME_VECTOR, regions[i], 1, false, &v);
+    FILLED(abbe_caustic_volume, v, make_volume(ABBE_VOLUME_VECTOR, regions[i], 1, false, &v));
     const size_t cells = v.region.cells;
     /* a part that is dark all over, as most of a caustic's region is */
     for (size_t c = 0; c < cells; c++) {
@@ -22,11 +20,11 @@ TEST(trees) {
       if (p[2] > 0) memset(v.value + 9 * c, 0, 18);
     }
     FREED uint16_t *back = calloc(cells * 9, sizeof *back);
-    OK(abbe_volume_order_make(&v.region, &order, &error));
+    MADE(abbe_volume_order, order, abbe_volume_order_make(&v.region, &order, &error));
     size_t before = cells + 1;
     for (size_t t = 0; t < 4; t++) {
-      OWNED(abbe_volume_tree, tree) = {0};
-      OK(abbe_volume_tree_make(&order, 9, v.value, tolerances[t], &tree, &error));
+      MADE(abbe_volume_tree, tree,
+           abbe_volume_tree_make(&order, 9, v.value, tolerances[t], &tree, &error));
       abbe_volume_tree_expand(&tree, &order, 9, back);
       assert_true(tree.leaves <= before && tree.leaves < cells);
       before = tree.leaves;
@@ -49,14 +47,12 @@ TEST(trees) {
     }
     /* all that may be joined is: the grid, or twenty faces of a shell, or a shell */
     assert_int_equal(before, i == 0 ? 1 : i == 1 ? 20 * 6 : 6);
-    abbe_volume_order_free(&order);
   }
 }
 
 TEST(sides_are_powers_of_two) {
-  OWNED(abbe_volume_region, r);
   abbe_volume_order order;
   const abbe_region_desc odd = {.kind = ABBE_REGION_GRID, .side = 12, .outer = 1};
-  OK(abbe_volume_region_make(&odd, &r, &error));
+  MADE(abbe_volume_region, r, abbe_volume_region_make(&odd, &r, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "power of two", abbe_volume_order_make(&r, &order, &error));
 }

@@ -22,20 +22,16 @@ static inline void ball_field(const double to_light[3], const double p[3], doubl
 /* Every cell has the field at its middle; of unit size, of a ball or of some solid. */
 static inline void make_volume(abbe_volume_kind kind, abbe_region_desc region, size_t nodes,
                                bool ball, abbe_caustic_volume *out) {
-  *out = (abbe_caustic_volume){.kind = kind,
-                               .body = {.name = "stone",
-                                        .material = "glass",
-                                        .ball = ball,
-                                        .radius = 1,
-                                        .vertices = 12,
-                                        .faces = 20,
-                                        .anchor = {0, 3, 11},
-                                        .anchor_at = {{1, 0, 0}, {0, 0.9, 0}, {0, 0.1, -0.8}}},
-                               .white = {0.95, 1, 1.09},
-                               .min_nm = 380,
-                               .max_nm = 780,
-                               .byte = 0.03125,
-                               .error = 0.125};
+  *out = (abbe_caustic_volume){
+      .kind = kind,
+      .body = FIELDS(.name = "stone", .material = "glass", .ball = ball, .radius = 1,
+                     .vertices = 12, .faces = 20, .anchor = {0, 3, 11},
+                     .anchor_at = {{1, 0, 0}, {0, 0.9, 0}, {0, 0.1, -0.8}}),
+      .white = {0.95, 1, 1.09},
+      .min_nm = 380,
+      .max_nm = 780,
+      .byte = 0.03125,
+      .error = 0.125};
   OK(abbe_volume_region_make(&region, &out->region, &error));
   OK(abbe_light_nodes_make(nodes, (const double[3]){0, 0, 1}, &out->nodes, &error));
   OK(abbe_caustic_volume_allocate(out, &error));

@@ -25,14 +25,13 @@ TEST(many_dresses_hold_the_same_points) {
       "\xce\xbb (\xc2\xb5m), n\n0.4861, 1.5224\n0.5876, 1.5168\n0.6563, 1.5143\n",
   };
   for (size_t i = 0; i < sizeof dresses / sizeof dresses[0]; i++) {
-    abbe_csv_points p = parse(dresses[i], NULL, NULL);
+    OWNED(abbe_csv_points, p) = parse(dresses[i], NULL, NULL);
     assert_int_equal(p.n.count, 3);
     assert_int_equal(p.k.count, 0);
     assert_near(p.n.point[0].lambda_nm, 486.1, 1e-9);
     assert_near(p.n.point[1].value, 1.5168, 0);
     assert_near(p.n.point[2].lambda_nm, 656.3, 1e-9);
     assert_near(p.n.point[2].error, 0, 0);
-    abbe_csv_points_free(&p);
   }
 }
 
@@ -56,17 +55,17 @@ TEST(a_third_column_is_what_the_header_or_the_caller_says) {
 
 /* As refractiveindex.info's download has it. */
 TEST(a_second_header_begins_a_block_of_k) {
-  abbe_csv_points p = parse("wl,n\n0.4,1.5\n0.5,1.4\n\nwl,k\n0.4,0.001\n0.6,0.002\n", NULL, NULL);
+  OWNED(abbe_csv_points, p) =
+      parse("wl,n\n0.4,1.5\n0.5,1.4\n\nwl,k\n0.4,0.001\n0.6,0.002\n", NULL, NULL);
   assert_int_equal(p.n.count, 2);
   assert_int_equal(p.k.count, 2);
   assert_near(p.k.point[1].lambda_nm, 600, 1e-9);
   assert_near(p.k.point[1].value, 0.002, 0);
-  abbe_csv_points_free(&p);
 }
 
 TEST(bad_lines_are_noted_and_passed_over) {
   OWNED(abbe_report, report) = {0};
-  abbe_csv_points p =
+  OWNED(abbe_csv_points, p) =
       parse("400,1.5\n500,what\n-5,1.5\n600\n600,0\n700,1.4\n400,9\n800,1,-1\n", NULL, &report);
   assert_int_equal(p.n.count, 2);
   assert_near(p.n.point[0].value, 1.5, 0);
@@ -74,7 +73,6 @@ TEST(bad_lines_are_noted_and_passed_over) {
   assert_int_equal(report.kinds[ABBE_NOTE_LOST], 1);
   assert_int_equal(report.note[0].line, 2);
   assert_contains(report.note[0].text, "not a number: 'what'");
-  abbe_csv_points_free(&p);
 }
 
 static void refuses(const char *text, const abbe_csv_options *options, abbe_result code,
@@ -114,7 +112,7 @@ TEST(a_lights_spectrum_is_read_by_the_same_rules) {
   };
   const abbe_csv_options light = {.quantity = ABBE_CSV_POWER};
   for (size_t i = 0; i < sizeof dresses / sizeof dresses[0]; i++) {
-    abbe_csv_points p = parse(dresses[i], &light, NULL);
+    OWNED(abbe_csv_points, p) = parse(dresses[i], &light, NULL);
     assert_int_equal(p.power.count, 3);
     assert_int_equal(p.n.count + p.k.count, 0);
     const double power[] = {1.5, 0, 2};
@@ -122,7 +120,6 @@ TEST(a_lights_spectrum_is_read_by_the_same_rules) {
       assert_near(p.power.point[k].lambda_nm, 400 + 100.0 * (double)k, 1e-9);
       assert_near(p.power.point[k].value, power[k], 0);
     }
-    abbe_csv_points_free(&p);
   }
 }
 
@@ -158,12 +155,11 @@ TEST(a_named_column_is_read) {
       "a chart\nblue sky\tx\tnm\n0.4\t9\t500\n0.2\t9\t400\n"};
   const abbe_csv_options options = {.quantity = ABBE_CSV_REFLECTANCE, .column = "blue sky"};
   for (size_t i = 0; i < sizeof dresses / sizeof *dresses; i++) {
-    abbe_csv_points p = parse(dresses[i], &options, NULL);
+    OWNED(abbe_csv_points, p) = parse(dresses[i], &options, NULL);
     assert_int_equal(p.power.count, 2);
     assert_near(p.power.point[0].lambda_nm, 400, 1e-9);
     assert_near(p.power.point[0].value, 0.2, 0);
     assert_near(p.power.point[1].value, 0.4, 0);
-    abbe_csv_points_free(&p);
   }
   refuses("nm,a,b\n400,1,2\n", &options, ABBE_SCHEMA, "the column 'blue sky'");
   refuses("nm,blue sky\n400,-1\n", &options, ABBE_SCHEMA, "m.csv:2: a reflectance is 0 or more");

@@ -30,14 +30,13 @@ TEST(cauchy_coefficients_are_found_again) {
   for (size_t terms = 1; terms <= 5; terms++) {
     abbe_dispersion cut = exact;
     cut.count = terms;
-    abbe_index_points points = sampled(&cut, 380, 780);
+    OWNED(abbe_index_points, points) = sampled(&cut, 380, 780);
     abbe_fit fit = made(&points, (abbe_fit_request){.terms = terms});
     assert_int_equal(fit.dispersion.model, ABBE_DISPERSION_CAUCHY);
     assert_int_equal(fit.dispersion.count, terms);
     assert_int_equal(fit.free, terms);
     for (size_t k = 0; k < terms; k++) assert_near(fit.dispersion.c[k], exact.c[k], 1e-11);
     assert_true(fit.max_error < 1e-13);
-    abbe_index_points_free(&points);
   }
 }
 
@@ -147,7 +146,7 @@ TEST(as_many_points_as_coefficients_leave_no_error_bar) {
 }
 
 TEST(many_terms_are_fitted_until_doubles_end) {
-  abbe_index_points points = sampled(&bk7, 380, 780);
+  OWNED(abbe_index_points, points) = sampled(&bk7, 380, 780);
   double before = INFINITY;
   for (size_t terms = 1; terms <= 16; terms++) {
     abbe_fit fit = made(&points, (abbe_fit_request){.terms = terms});
@@ -158,7 +157,6 @@ TEST(many_terms_are_fitted_until_doubles_end) {
   abbe_fit fit;
   REFUSED(ABBE_INVALID_ARGUMENT, "cancel beyond double precision",
           abbe_fit_make(&points, &(abbe_fit_request){.terms = 32}, &fit, &error));
-  abbe_index_points_free(&points);
 }
 
 /* ---- Sellmeier ---- */
@@ -176,12 +174,10 @@ TEST(published_sellmeier_coefficients_are_found_again) {
        380,
        2500},
       /* fused silica [Malitson1965], its poles squared */
-      {{.model = ABBE_DISPERSION_SELLMEIER2,
-        .count = 7,
-        .c = {0, 0.6961663, 0.0684043 * 0.0684043, 0.4079426, 0.1162414 * 0.1162414, 0.8974794,
-              9.896161 * 9.896161}},
-       210,
-       6700},
+      {FIELDS(.model = ABBE_DISPERSION_SELLMEIER2, .count = 7,
+              .c = {0, 0.6961663, 0.0684043 * 0.0684043, 0.4079426, 0.1162414 * 0.1162414,
+                    0.8974794, 9.896161 * 9.896161}),
+       210, 6700},
       /* diamond [Peter1923]: two poles, none beyond the red */
       {{.model = ABBE_DISPERSION_SELLMEIER2,
         .count = 5,
@@ -190,9 +186,9 @@ TEST(published_sellmeier_coefficients_are_found_again) {
        760},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    OWNED(abbe_index_points, points);
-    OK(abbe_index_points_sample(&cases[i].glass, cases[i].min_nm, cases[i].max_nm, 2, 200, &points,
-                                &error));
+    MADE(abbe_index_points, points,
+         abbe_index_points_sample(&cases[i].glass, cases[i].min_nm, cases[i].max_nm, 2, 200,
+                                  &points, &error));
     abbe_fit fit = made(
         &points, (abbe_fit_request){.form = ABBE_FIT_SELLMEIER, .terms = cases[i].glass.count / 2});
     assert_int_equal(fit.dispersion.model, ABBE_DISPERSION_SELLMEIER2);
@@ -207,13 +203,12 @@ TEST(published_sellmeier_coefficients_are_found_again) {
 TEST(random_sellmeier_curves_are_met) {
   uint64_t random = 3;
   for (int i = 0; i < 12; i++) {
-    abbe_dispersion d = {.model = ABBE_DISPERSION_SELLMEIER2,
-                         .count = 5,
-                         .c = {0, random_between(&random, 0.8, 3.5),
-                               random_between(&random, 0.004, 0.04),
-                               random_between(&random, 0.2, 3), random_between(&random, 50, 300)}};
-    OWNED(abbe_index_points, points);
-    OK(abbe_index_points_sample(&d, 350, 2000, 2, 120, &points, &error));
+    abbe_dispersion d =
+        FIELDS(.model = ABBE_DISPERSION_SELLMEIER2, .count = 5,
+               .c = {0, random_between(&random, 0.8, 3.5), random_between(&random, 0.004, 0.04),
+                     random_between(&random, 0.2, 3), random_between(&random, 50, 300)});
+    MADE(abbe_index_points, points,
+         abbe_index_points_sample(&d, 350, 2000, 2, 120, &points, &error));
     abbe_fit fit = made(&points, (abbe_fit_request){.form = ABBE_FIT_SELLMEIER, .terms = 2});
     if (!(fit.max_error < 1e-9))
       fail_msg("%d: B %g C %g, B %g C %g is missed by %g", i, d.c[1], d.c[2], d.c[3], d.c[4],
@@ -306,11 +301,10 @@ TEST(a_range_too_small_for_the_data_is_refused) {
       assert_contains(why.text, "standard error");
     }
   }
-  abbe_index_points points = sampled(&bk7, 500, 500.0000001);
+  OWNED(abbe_index_points, points) = sampled(&bk7, 500, 500.0000001);
   abbe_fit fit;
   REFUSED(ABBE_INVALID_ARGUMENT, "too narrow",
           abbe_fit_make(&points, &(abbe_fit_request){.terms = 2}, &fit, &error));
-  abbe_index_points_free(&points);
 }
 
 /* Indices printed to five digits over the visible do not carry three Sellmeier terms. */

@@ -13,7 +13,8 @@ static abbe_index_points parse(const char *text) {
 }
 
 TEST(a_plain_file_is_read) {
-  abbe_index_points p = parse("# own measurement\n\n656.3,1.5143\r\n587.6, 1.5168\n486.1,1.5224");
+  OWNED(abbe_index_points, p) =
+      parse("# own measurement\n\n656.3,1.5143\r\n587.6, 1.5168\n486.1,1.5224");
   assert_int_equal(p.count, 3);
   assert_near(p.lambda_nm[0], 486.1, 0); /* in order, whatever the file's */
   assert_near(p.n[0], 1.5224, 0);
@@ -21,7 +22,6 @@ TEST(a_plain_file_is_read) {
   assert_near(p.n[1], 1.5168, 0);
   assert_null(p.uncertainty);
   assert_false(p.exact);
-  abbe_index_points_free(&p);
   abbe_index_points_free(&p);
 }
 
@@ -38,19 +38,17 @@ TEST(units_are_named_or_plain) {
       {"10.6 2.4\n0.5 2.5\n", 500},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    abbe_index_points p = parse(cases[i].text);
+    OWNED(abbe_index_points, p) = parse(cases[i].text);
     assert_near(p.lambda_nm[0], cases[i].first_nm, 1e-10);
-    abbe_index_points_free(&p);
   }
 }
 
 TEST(uncertainties_are_kept_and_wavelengths_may_repeat) {
-  abbe_index_points p = parse("600,1.51,2e-5\n500,1.52,1e-5\n600,1.512,3e-5\n");
+  OWNED(abbe_index_points, p) = parse("600,1.51,2e-5\n500,1.52,1e-5\n600,1.512,3e-5\n");
   assert_int_equal(p.count, 3);
   assert_near(p.uncertainty[0], 1e-5, 0);
   assert_near(p.uncertainty[1], 2e-5, 0); /* of equal wavelengths the earlier line is first */
   assert_near(p.uncertainty[2], 3e-5, 0);
-  abbe_index_points_free(&p);
 }
 
 TEST(bad_lines_are_named) {
@@ -103,11 +101,10 @@ TEST(many_points_are_read_at_once) {
   size_t used = 0;
   for (int i = COUNT; i > 0; i--)
     used += (size_t)snprintf(text + used, sizeof text - used, "%d.5 %.6f\n", 400 + i, 1 + 1.0 / i);
-  abbe_index_points p = parse(text);
+  OWNED(abbe_index_points, p) = parse(text);
   assert_int_equal(p.count, COUNT);
   for (size_t i = 1; i < COUNT; i++) assert_true(p.lambda_nm[i] > p.lambda_nm[i - 1]);
   assert_near(p.n[0], 2, 0);
-  abbe_index_points_free(&p);
 }
 
 TEST(formulas_are_sampled_to_both_ends) {
@@ -118,9 +115,9 @@ TEST(formulas_are_sampled_to_both_ends) {
   } cases[] = {{380, 780, 2, 1000, 401},   {380, 780, 500, 1000, 500}, {380, 780, 2, 100, 100},
                {380.5, 382.25, 2, 100, 3}, {380, 381, 7, 9, 7},        {1, 1e6, 2, 50, 50}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    OWNED(abbe_index_points, p);
-    OK(abbe_index_points_sample(&d, cases[i].min_nm, cases[i].max_nm, cases[i].least, cases[i].most,
-                                &p, &error));
+    MADE(abbe_index_points, p,
+         abbe_index_points_sample(&d, cases[i].min_nm, cases[i].max_nm, cases[i].least,
+                                  cases[i].most, &p, &error));
     assert_int_equal(p.count, cases[i].count);
     assert_near(p.lambda_nm[0], cases[i].min_nm, 0);
     assert_near(p.lambda_nm[p.count - 1], cases[i].max_nm, 0);

@@ -26,7 +26,7 @@ TEST(points_are_put_in_order_and_the_first_of_equals_stays) {
 }
 
 TEST(a_long_list_ends_where_a_spectrum_does) {
-  abbe_points points = {0};
+  OWNED(abbe_points, points) = {0};
   for (int i = 0; i < ABBE_SPECTRUM_MAX_COUNT; i++)
     OK(abbe_points_add(&points, (abbe_point){70000 - i, i, 0}, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "more than 65536 points",
@@ -36,5 +36,4 @@ TEST(a_long_list_ends_where_a_spectrum_does) {
   assert_int_equal(dropped, 0);
   for (size_t i = 1; i < points.count; i++)
     assert_true(points.point[i - 1].lambda_nm < points.point[i].lambda_nm);
-  abbe_points_free(&points);
 }

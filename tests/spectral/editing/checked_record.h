@@ -16,11 +16,10 @@ static inline abbe_findings checked_table(const abbe_material_table *table) {
 
 /* The table of these records alone, read leniently and nothing left out. */
 static inline abbe_material_table checked_parse(const char *records) {
-  char text[2048];
   abbe_material_table table;
   OWNED(abbe_report, report) = {0};
   abbe_error error = {0};
-  snprintf(text, sizeof text, "materials:\n%s", records);
+  const char *text = printed("materials:\n%s", records);
   if (abbe_material_table_parse_lenient(text, strlen(text), "t.yaml", &table, &report, &error) !=
       ABBE_OK)
     fail_msg("%s", error.text);

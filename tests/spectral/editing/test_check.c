@@ -23,9 +23,8 @@ static size_t count_of(const abbe_findings *found, abbe_finding_weight at_least)
 GROUP(shipped_load, shipped_free);
 
 TEST(the_thesis_has_four_wrong_rows_and_bk7) {
-  OWNED(abbe_material_table, thesis);
-  OK(abbe_material_table_load("thesis", &thesis, &error));
-  abbe_findings found = checked_table(&thesis);
+  MADE(abbe_material_table, thesis, abbe_material_table_load("thesis", &thesis, &error));
+  OWNED(abbe_findings, found) = checked_table(&thesis);
   const char *const wrong[] = {"fused-silica", "k5", "bak4", "baf10"};
   const double right_a[] = {1.44775, 1.50870, 1.55362, 1.64848};
   assert_int_equal(found.count, 4);
@@ -40,11 +39,10 @@ TEST(the_thesis_has_four_wrong_rows_and_bk7) {
   }
   assert_contains(found.finding[0].evidence, "fused-silica has 1.45846 and 67.82");
   abbe_findings_free(&found);
-  abbe_findings_free(&found);
 }
 
 TEST(the_default_table_is_well) {
-  abbe_findings found = checked_table(&shipped);
+  OWNED(abbe_findings, found) = checked_table(&shipped);
   assert_int_equal(count_of(&found, ABBE_FINDING_DOUBTFUL), 0);
   for (size_t i = 0; i < found.count; i++) {
     const abbe_finding *f = &found.finding[i];
@@ -53,7 +51,6 @@ TEST(the_default_table_is_well) {
                          f->weight == ABBE_FINDING_NOTE;
     if (!colours) assert_int_equal(f->kind, ABBE_FINDING_EXTRAPOLATED);
   }
-  abbe_findings_free(&found);
 }
 
 /* ---- one record at a time ---- */
@@ -85,24 +82,24 @@ TEST(each_fault_is_found_with_its_fix) {
        "source: s1}",
        ABBE_FINDING_A_IS_ND, ABBE_FINDING_WRONG, "n-bak4 has 1.56883 and 55.98", "coefficients",
        "[1.553619, 0.00531]"},
-      {"- {name: a, model: cauchy, coefficients: [1.5690, 0.00531], range_nm: [380, 780], "
-       "source: s1, n_d: 1.56883}",
+      {"- {name: a, model: cauchy, coefficients: [1.5690, 0.00531], range_nm: [380, 780], source: "
+       "s1, n_d: 1.56883}",
        ABBE_FINDING_A_IS_ND, ABBE_FINDING_WRONG, "its own source has n_d 1.56883", "coefficients",
        "[1.553619, 0.00531]"},
       /* no namesake: the known glass next to it makes it doubtful, not certain */
-      {"- {name: a, model: cauchy, coefficients: [1.5690, 0.00531], range_nm: [380, 780], "
-       "source: s1}",
+      {"- {name: a, model: cauchy, coefficients: [1.5690, 0.00531], range_nm: [380, 780], source: "
+       "s1}",
        ABBE_FINDING_A_IS_ND, ABBE_FINDING_DOUBTFUL, "n-bak4", NULL, "[1.553619, 0.00531]"},
-      {"- {name: BK7, model: sellmeier, coefficients: [0, " POLES ", range_nm: [300, 2500], "
-       "source: s1}",
+      {"- {name: BK7, model: sellmeier, coefficients: [0, " POLES
+       ", range_nm: [300, 2500], source: s1}",
        ABBE_FINDING_POLES, ABBE_FINDING_WRONG, "squares already", "model", "sellmeier2"},
       /* nothing but an unusual V_d speaks against it, and some materials have one */
-      {"- {name: a, model: sellmeier, coefficients: [0, " POLES ", range_nm: [300, 2500], "
-       "source: s1}",
+      {"- {name: a, model: sellmeier, coefficients: [0, " POLES
+       ", range_nm: [300, 2500], source: s1}",
        ABBE_FINDING_POLES, ABBE_FINDING_DOUBTFUL, "read so they are 1.5168 and 64.17", NULL,
        "sellmeier2"},
-      {"- {name: a, model: sellmeier2, coefficients: [0, " ROOTS ", range_nm: [300, 2500], "
-       "source: 's1; n_d 1.5168, V_d 64.17'}",
+      {"- {name: a, model: sellmeier2, coefficients: [0, " ROOTS
+       ", range_nm: [300, 2500], source: 's1; n_d 1.5168, V_d 64.17'}",
        ABBE_FINDING_POLES, ABBE_FINDING_WRONG, "not squared", "model", "sellmeier"},
       {"- {name: a, model: sellmeier2, coefficients: [0, 1.03961212, 0.00600069867, 0.231792344, "
        "0.14148467, 1.01046945, 103.560653], range_nm: [400, 2500], source: 's1; n_d 1.5168, V_d "
@@ -111,8 +108,7 @@ TEST(each_fault_is_found_with_its_fix) {
        "coefficients", NULL},
       /* a pole and the next strength have changed places, as two columns of a table do */
       {"- {name: a, model: sellmeier2, coefficients: [0, 1.15, 0, 0.0155, 0, 0, 0], range_nm: "
-       "[380, "
-       "1000], source: s1, n_d: 1.48462, v_d: 38.15}",
+       "[380, 1000], source: s1, n_d: 1.48462, v_d: 38.15}",
        ABBE_FINDING_ORDER, ABBE_FINDING_WRONG, "c2 and c3 have changed places", "coefficients",
        "[0, 1.15, 0.0155, 0, 0, 0, 0]"},
       {"- {name: a, model: sellmeier2, coefficients: [0, 0.231792344, 0.00600069867, 1.03961212, "
@@ -124,14 +120,12 @@ TEST(each_fault_is_found_with_its_fix) {
        "0.0200179144, 1.01046945, 103.560653], range_nm: [300, 2500], source: s1}",
        ABBE_FINDING_ORDER, ABBE_FINDING_WRONG, "the known n-bk7", "coefficients", NULL},
       {"- {name: a, model: polynomial, coefficients: [2.25, -10, -2], range_nm: [380, 780], "
-       "source: "
-       "s1}",
+       "source: s1}",
        ABBE_FINDING_NO_INDEX, ABBE_FINDING_WRONG, "no real index at 380 nm", NULL, NULL},
       {"- {name: a, model: cauchy, coefficients: [0.99, 0.001], range_nm: [380, 780], source: s1}",
        ABBE_FINDING_BELOW_ONE, ABBE_FINDING_WRONG, "0.991644 at 780 nm", NULL, NULL},
       {"- {name: a, model: sellmeier2, coefficients: [0, 1.1, 0.01, 0.9, 60], range_nm: [380, "
-       "5800], "
-       "source: s1}",
+       "5800], source: s1}",
        ABBE_FINDING_BELOW_ONE, ABBE_FINDING_DOUBTFUL, "at", NULL, NULL},
       {"- {name: a, model: cauchy, coefficients: [1.5, -0.001], range_nm: [380, 780], source: s1}",
        ABBE_FINDING_RISING, ABBE_FINDING_DOUBTFUL, "from 380 to 780 nm", NULL, NULL},
@@ -142,12 +136,12 @@ TEST(each_fault_is_found_with_its_fix) {
       {"- {name: a, model: sellmeier2, coefficients: [0, 1.03961212, 0.00600069867, 0.231972344, "
        "0.0200179144, 1.01046945, 103.560653], range_nm: [300, 2500], source: s1, n_d: 1.5168}",
        ABBE_FINDING_OFF_ND, ABBE_FINDING_DOUBTFUL, "1.516863: 6.3e-05 more", NULL, NULL},
-      {"- {name: a, model: sellmeier2, coefficients: [0, " POLES ", range_nm: [300, 2500], "
-       "source: s1, n_d: 1.5168, v_d: 61.47}",
+      {"- {name: a, model: sellmeier2, coefficients: [0, " POLES
+       ", range_nm: [300, 2500], source: s1, n_d: 1.5168, v_d: 61.47}",
        ABBE_FINDING_OFF_VD, ABBE_FINDING_WRONG, "V_d 61.47, its coefficients give 64.167", NULL,
        NULL},
-      {"- {name: diamond, model: sellmeier2, coefficients: [0, " POLES ", range_nm: [300, 2500], "
-       "source: s1}",
+      {"- {name: diamond, model: sellmeier2, coefficients: [0, " POLES
+       ", range_nm: [300, 2500], source: s1}",
        ABBE_FINDING_UNLIKE, ABBE_FINDING_DOUBTFUL, "2.41749", NULL, NULL},
       {"- {name: a, model: cauchy, coefficients: [1.5, 0.004], range_nm: [450, 800], extrapolate: "
        "true, source: s1}",
@@ -170,8 +164,8 @@ TEST(each_fault_is_found_with_its_fix) {
        ABBE_FINDING_FIT, ABBE_FINDING_WRONG, "it errs by 0.00693 at 380 nm", "fit.cauchy2", NULL},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    abbe_material_table table = checked_parse(cases[i].record);
-    abbe_findings found = checked_table(&table);
+    OWNED(abbe_material_table, table) = checked_parse(cases[i].record);
+    OWNED(abbe_findings, found) = checked_table(&table);
     const abbe_finding *f = find(&found, cases[i].kind);
     if (f == NULL)
       fail_msg("%s: %s is not found", cases[i].record, abbe_finding_kind_name(cases[i].kind));
@@ -184,18 +178,16 @@ TEST(each_fault_is_found_with_its_fix) {
     if (cases[i].key != NULL) assert_string_equal(f->key, cases[i].key);
     if (cases[i].value != NULL) assert_string_equal(f->value, cases[i].value);
     assert_int_equal(f->other, ABBE_FINDING_NO_ROW);
-    abbe_findings_free(&found);
-    abbe_material_table_free(&table);
   }
 }
 
 TEST(rows_that_are_alike_are_found) {
-  abbe_material_table table = checked_parse(
+  OWNED(abbe_material_table, table) = checked_parse(
       "- {name: a, model: cauchy, coefficients: [1.5, 0.004], range_nm: [380, 780], source: s1}\n"
       "- {name: b, model: cauchy, coefficients: [1.6, 0.009], range_nm: [380, 780], source: s1}\n"
       "- {name: c, model: cauchy, coefficients: [1.5, 0.004], range_nm: [380, 780], source: s1}\n"
-      "- {name: B, model: cauchy, coefficients: [1.600004, 0.009], range_nm: [380, 780], "
-      "source: s1}\n"
+      "- {name: B, model: cauchy, coefficients: [1.600004, 0.009], range_nm: [380, 780], source: "
+      "s1}\n"
       "- {name: f, model: cauchy, coefficients: [1.70001, 0.01], range_nm: [380, 780], source: "
       "s1}\n"
       "- {name: g, model: cauchy, coefficients: [1.7, 0.01], range_nm: [380, 780], source: s1}\n"
@@ -203,7 +195,7 @@ TEST(rows_that_are_alike_are_found) {
       "s1}\n"
       "- {name: d, model: constant, coefficients: [1.5], source: s1}\n"
       "- {name: e, model: constant, coefficients: [1.5], source: s1}\n");
-  abbe_findings found = checked_table(&table);
+  OWNED(abbe_findings, found) = checked_table(&table);
   assert_int_equal(found.count, 4);
   assert_int_equal(found.finding[0].kind, ABBE_FINDING_SAME);
   assert_int_equal(found.finding[0].row, 2);
@@ -217,8 +209,6 @@ TEST(rows_that_are_alike_are_found) {
   assert_contains(found.finding[2].evidence, "by 4e-06");
   assert_int_equal(found.finding[3].kind, ABBE_FINDING_NEAR); /* a slip in the last digit */
   assert_contains(found.finding[3].evidence, "that of f (line 6) by 1e-05");
-  abbe_findings_free(&found);
-  abbe_material_table_free(&table);
 }
 
 /* ---- fixes ---- */
@@ -228,8 +218,7 @@ TEST(certain_fixes_fix) {
   const char text[] =
       "materials:\n"
       "- {name: bak4, model: cauchy, coefficients: [1.5690, 0.00531], range_nm: [380, 780], "
-      "source: "
-      "s1}\n"
+      "source: s1}\n"
       "- {name: nm, model: cauchy, coefficients: [1.7, 9200], range_nm: [380, 780], source: s1}\n"
       "- {name: swap, model: cauchy, coefficients: [0.0142, 1.69], range_nm: [380, 780], source: "
       "s1}\n"
@@ -248,11 +237,11 @@ TEST(certain_fixes_fix) {
   for (int pass = 0; pass < 3 && certain > 0; pass++) {
     size_t size = 0;
     const char *now = abbe_table_edit_text(edit, &size);
-    OWNED(abbe_material_table, table) = {0};
     abbe_report report = {0};
-    OK(abbe_material_table_parse_lenient(now, size, "t.yaml", &table, &report, &error));
+    MADE(abbe_material_table, table,
+         abbe_material_table_parse_lenient(now, size, "t.yaml", &table, &report, &error));
     assert_int_equal(report.count, 0);
-    abbe_findings found = checked_table(&table);
+    OWNED(abbe_findings, found) = checked_table(&table);
     certain = 0;
     for (size_t i = 0; i < found.count; i++) {
       const abbe_finding *f = &found.finding[i];
@@ -263,7 +252,6 @@ TEST(certain_fixes_fix) {
     }
     fixed += certain;
     if (certain == 0) assert_int_equal(count_of(&found, ABBE_FINDING_DOUBTFUL), 0);
-    abbe_findings_free(&found);
   }
   assert_int_equal(certain, 0);
   assert_int_equal(fixed, 7);
@@ -285,8 +273,7 @@ static abbe_material row(const abbe_dispersion *d) {
 
 /* The finding of that kind, or none where the kind is ABBE_FINDING_KIND_COUNT, and nothing else. */
 static void expect(const abbe_material *m, abbe_finding_kind kind, const abbe_dispersion *right) {
-  OWNED(abbe_findings, found) = {0};
-  OK(abbe_check_material(m, NULL, &found, &error));
+  MADE(abbe_findings, found, abbe_check_material(m, NULL, &found, &error));
   bool good = kind == ABBE_FINDING_KIND_COUNT ? found.count == 0
                                               : found.count == 1 && found.finding[0].kind == kind;
   if (!good) {
@@ -326,16 +313,14 @@ TEST(any_glass_is_well_or_has_its_own_fault) {
     abbe_material m = row(&good);
     expect(&m, ABBE_FINDING_KIND_COUNT, NULL);
     m.dispersion.model = ABBE_DISPERSION_SELLMEIER2;
-    abbe_findings found = {0};
     /* where the unsquared poles still give a usual V_d, nothing but the source tells */
     abbe_dispersion_numbers own = abbe_dispersion_describe(&good);
     m.published_n_d = round(own.n_d * 1e5) / 1e5;
     m.published_v_d = round(own.v_d * 100) / 100;
-    OK(abbe_check_material(&m, NULL, &found, &error));
+    MADE(abbe_findings, found, abbe_check_material(&m, NULL, &found, &error));
     assert_int_equal(found.count, 1);
     assert_int_equal(found.finding[0].kind, ABBE_FINDING_POLES);
     assert_string_equal(found.finding[0].value, "sellmeier");
-    abbe_findings_free(&found);
 
     abbe_dispersion cauchy = {.model = ABBE_DISPERSION_CAUCHY, .count = 2};
     cauchy.c[1] = (own.n_d - 1) / own.v_d / 1.9097;
@@ -370,9 +355,8 @@ TEST(senseless_records_are_survived) {
     m.published_n_d = random_between(&random, -1, 3);
     m.published_v_d = random_between(&random, -1, 100);
     m.fit[0] = (abbe_material_fit){2, {1.5, 0.004}, 1e-4, 380, 780};
-    OWNED(abbe_findings, found) = {0};
     const abbe_material_table one = {.count = 1, .material = &m};
-    OK(abbe_check_table(&one, &shipped, &found, &error));
+    MADE(abbe_findings, found, abbe_check_table(&one, &shipped, &found, &error));
     for (size_t k = 0; k < found.count; k++) {
       assert_non_null(found.finding[k].evidence);
       assert_non_null(found.finding[k].fix);
@@ -415,18 +399,13 @@ TEST(crystals_have_indices_that_go_together) {
               {"{model: cauchy, coefficients: [1.48, 4000]}", 1},
               {"{model: sellmeier2, coefficients: [0, -2, 0.01]}", 1}};
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    char text[512];
-    snprintf(text, sizeof text,
-             "- {name: spar, model: cauchy, coefficients: [1.64, 0.007], range_nm: [350, 900],\n"
+    OWNED(abbe_material_table, t) = checked_parse(printed("- {name: spar, model: cauchy, coefficients: [1.64, 0.007], range_nm: [350, 900],\n"
              "   source: a book, extraordinary: %s}\n",
-             rows[i].extraordinary);
-    abbe_material_table t = checked_parse(text);
-    abbe_findings found = checked_table(&t);
+             rows[i].extraordinary));
+    OWNED(abbe_findings, found) = checked_table(&t);
     size_t count = 0;
     for (size_t k = 0; k < found.count; k++)
       count += found.finding[k].kind == ABBE_FINDING_BIREFRINGENCE;
     assert_int_equal(count, rows[i].findings);
-    abbe_findings_free(&found);
-    abbe_material_table_free(&t);
   }
 }

@@ -6,11 +6,9 @@
 
 /* What is found about one record. */
 static abbe_findings check_record(const char *record) {
-  abbe_material_table table = checked_parse(record);
+  OWNED(abbe_material_table, table) = checked_parse(record);
   assert_int_equal(table.count, 1);
-  abbe_findings found = checked_table(&table);
-  abbe_material_table_free(&table);
-  return found;
+  return checked_table(&table);
 }
 
 static size_t doubts_in(const abbe_findings *found) {
@@ -21,12 +19,11 @@ static size_t doubts_in(const abbe_findings *found) {
 }
 
 static void assert_doubts(const char *record, size_t count) {
-  abbe_findings found = check_record(record);
+  OWNED(abbe_findings, found) = check_record(record);
   if (doubts_in(&found) != count)
     fail_msg("%zu doubts, not %zu: %s\n%s", doubts_in(&found), count, record,
              found.count > 0 ? found.finding[0].evidence : "nothing is found");
   for (size_t i = 0; i < found.count && count == 0; i++) assert_false(found.finding[i].certain);
-  abbe_findings_free(&found);
 }
 
 GROUP(shipped_load, shipped_free);
@@ -36,20 +33,20 @@ TEST(few_digits_are_no_wrong_digit) {
   const struct {
     const char *record;
     size_t doubtful;
-  } rows[] = {{"- {name: a, model: sellmeier2, coefficients: [0, 1.1523, 0.0155], range_nm: [380, "
-               "1000], source: s1, n_d: 1.48545, v_d: 38.25}",
-               0},
-              {"- {name: a, model: sellmeier2, coefficients: [0, 1.152300001, 0.0155000001], "
-               "range_nm: [380, 1000], source: s1, n_d: 1.48545, v_d: 38.25}",
-               2},
-              {"- {name: a, model: sellmeier2, coefficients: [0, 1.1523, 0.0155], range_nm: [380, "
-               "1000], source: s1, n_d: 1.4857, v_d: 38.7}",
-               2},
-              /* the powers of a polynomial are exact */
-              {"- {name: a, model: polynomial, coefficients: [2.2718929, -0.010108077, 2, "
-               "0.010592509, -2, 0.00020816965, -4], range_nm: [365, 1014], source: s1, n_d: "
-               "1.51696}",
-               1}};
+  } rows[] = {
+      {"- {name: a, model: sellmeier2, coefficients: [0, 1.1523, 0.0155], range_nm: [380, 1000], "
+       "source: s1, n_d: 1.48545, v_d: 38.25}",
+       0},
+      {"- {name: a, model: sellmeier2, coefficients: [0, 1.152300001, 0.0155000001], range_nm: "
+       "[380, 1000], source: s1, n_d: 1.48545, v_d: 38.25}",
+       2},
+      {"- {name: a, model: sellmeier2, coefficients: [0, 1.1523, 0.0155], range_nm: [380, 1000], "
+       "source: s1, n_d: 1.4857, v_d: 38.7}",
+       2},
+      /* the powers of a polynomial are exact */
+      {"- {name: a, model: polynomial, coefficients: [2.2718929, -0.010108077, 2, 0.010592509, -2, "
+       "0.00020816965, -4], range_nm: [365, 1014], source: s1, n_d: 1.51696}",
+       1}};
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
     assert_doubts(rows[i].record, rows[i].doubtful);
 }
@@ -105,12 +102,11 @@ TEST(rows_are_judged_inside_their_range) {
   };
   for (size_t i = 0; i < sizeof right / sizeof right[0]; i++) assert_doubts(right[i], 0);
   /* poles of the infrared that were not squared put a resonance inside the range */
-  abbe_findings found = check_record(
-      "- {name: a, model: sellmeier2, coefficients: [1.45, 2.9, 0.374, 0.95, 37.1], range_nm: "
-      "[1000, 12000], source: s1}");
+  OWNED(abbe_findings, found) =
+      check_record("- {name: a, model: sellmeier2, coefficients: [1.45, 2.9, 0.374, 0.95, 37.1], "
+                   "range_nm: [1000, 12000], source: s1}");
   assert_int_equal(doubts_in(&found), 1);
   assert_int_equal(found.finding[0].kind, ABBE_FINDING_POLES);
   assert_true(found.finding[0].certain);
   assert_string_equal(found.finding[0].value, "sellmeier");
-  abbe_findings_free(&found);
 }

@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+HOLDS(abbe_table_edit);
+
 static const char two[] = "# Two glasses\n"
                           "description: two\n"
                           "\n"
@@ -75,7 +77,7 @@ static void check_value(const abbe_table_edit *edit, const char *key, const char
 }
 
 TEST(values_are_told_and_taken_back) {
-  abbe_table_edit *edit = parse(two);
+  HELD(abbe_table_edit, edit) = parse(two);
   check_value(edit, "source", "[Somebody] p. 3");
   check_value(edit, "coefficients.0", "1.5220");
   check_value(edit, "coefficients.2", NULL);
@@ -88,7 +90,6 @@ TEST(values_are_told_and_taken_back) {
   check_value(edit, "source", "x");
   OK(abbe_table_edit_revert(edit, &error));
   assert_string_equal(text_of(edit), two);
-  abbe_table_edit_free(edit);
 }
 
 TEST(new_keys_go_where_the_format_has_them) {
@@ -134,22 +135,21 @@ TEST(each_edit_stays_inside_its_record) {
   for (int file = 0; file < 2; file++) {
     FREED char *before = NULL;
     size_t size = 0;
-    OWNED(abbe_material_table, table) = {0};
     OK(abbe_file_read(paths[file], 1 << 20, &before, &size, &error));
-    OK(abbe_material_table_parse(before, size, "t", &table, &error));
+    MADE(abbe_material_table, table, abbe_material_table_parse(before, size, "t", &table, &error));
     for (size_t i = 0; i < table.count; i++)
       for (size_t action = 0; action < 5; action++) {
         const abbe_material *m = &table.material[i];
         if (i > 4 && i + 1 < table.count && i % 5 != action) continue;
-        abbe_table_edit *edit = parse(before);
+        HELD(abbe_table_edit, edit) = parse(before);
         if (action == 0) OK(abbe_table_edit_set(edit, m->name, "warning", "\"# x\"", &error));
         if (action == 1) OK(abbe_table_edit_set(edit, m->name, "coefficients", "[1.75]", &error));
         if (action == 2) OK(abbe_table_edit_rename(edit, m->name, "Zzz", &error));
         if (action == 3) OK(abbe_table_edit_unset(edit, m->name, "source", &error));
         if (action == 4) OK(abbe_table_edit_remove(edit, m->name, &error));
         const char *after = text_of(edit);
-        char own[128], next[128] = "";
-        snprintf(own, sizeof own, "  - name: %s\n", m->name);
+        char next[128] = "";
+        const char *own = printed("  - name: %s\n", m->name);
         if (i + 1 < table.count) snprintf(next, sizeof next, "  - name: %s\n", m[1].name);
         size_t head = (size_t)(strstr(before, own) - before);
         if (action == 4 && !*next) head--; /* the blank line that set it off goes with it */
@@ -157,7 +157,6 @@ TEST(each_edit_stays_inside_its_record) {
         const char *tail[2] = {*next ? strstr(before, next) : "", *next ? strstr(after, next) : ""};
         assert_string_equal(tail[0], tail[1]);
         assert_string_not_equal(before, after);
-        abbe_table_edit_free(edit);
       }
   }
 }
@@ -197,8 +196,7 @@ static void make_table(char *out, int count) {
   const char *end = chance(4) == 0 ? "\r\n" : "\n";
   bool brackets = chance(4) == 0, blank = chance(2) == 0;
   const char *dash = chance(2) == 0 ? "" : "  ";
-  char indent[8];
-  snprintf(indent, sizeof indent, "%s  ", dash);
+  const char *indent = printed("%s  ", dash);
   *out = '\0';
   if (chance(3) == 0) strcpy(out, "\xEF\xBB\xBF");
   sprintf(out + strlen(out), "# out%sdescription: a \u2026 table%smaterials:%s", end, end,
@@ -259,7 +257,7 @@ static void check_random_table(int round) {
   char *before[COUNT], name[8];
   state_of_chance = (uint64_t)round;
   make_table(text, COUNT);
-  abbe_table_edit *edit = parse(text);
+  HELD(abbe_table_edit, edit) = parse(text);
   OK(abbe_table_edit_check(edit, &error));
   for (int i = 0; i < COUNT; i++) {
     snprintf(name, sizeof name, "m%d", i);
@@ -287,7 +285,6 @@ static void check_random_table(int round) {
   }
   OK(abbe_table_edit_revert(edit, &error));
   assert_string_equal(text_of(edit), text);
-  abbe_table_edit_free(edit);
 }
 
 TEST(random_tables_keep_their_other_records) {
@@ -296,11 +293,10 @@ TEST(random_tables_keep_their_other_records) {
 
 static void refuses(const char *text, abbe_result code, const char *part,
                     abbe_result (*act)(abbe_table_edit *, abbe_error *)) {
-  abbe_table_edit *edit = parse(text);
+  HELD(abbe_table_edit, edit) = parse(text);
   if (act(edit, &last_error) != code) fail_msg("not '%s': %s", part, last_error.text);
   assert_contains(last_error.text, part);
   assert_string_equal(text_of(edit), text);
-  abbe_table_edit_free(edit);
 }
 
 static abbe_result set_unknown(abbe_table_edit *e, abbe_error *error) {
@@ -372,7 +368,7 @@ static void check_file(const char *wanted) {
 }
 
 TEST_WITH(a_saved_edit_is_on_the_disk, make_file, drop_file) {
-  abbe_table_edit *edit = NULL;
+  HELD(abbe_table_edit, edit) = NULL;
   struct stat status;
   assert_int_equal(chmod(path, 0640), 0);
   OK(abbe_table_edit_open(path, &edit, &error));
@@ -385,21 +381,19 @@ TEST_WITH(a_saved_edit_is_on_the_disk, make_file, drop_file) {
   OK(abbe_table_edit_set(edit, "flint", "coefficients.0", "1.6", &error));
   OK(abbe_table_edit_save(edit, &error));
   check_file(two);
-  abbe_table_edit_free(edit);
 }
 
 TEST_WITH(a_file_that_changed_is_not_overwritten, make_file, drop_file) {
-  abbe_table_edit *edit = NULL;
+  HELD(abbe_table_edit, edit) = NULL;
   OK(abbe_table_edit_open(path, &edit, &error));
   OK(abbe_table_edit_set(edit, "flint", "coefficients.0", "1.7", &error));
   OK(abbe_file_write(path, "materials: []\n", 14, &error));
   REFUSED(ABBE_IO, "changed by someone else", abbe_table_edit_save(edit, &error));
   check_file("materials: []\n");
-  abbe_table_edit_free(edit);
 }
 
 TEST_WITH(a_table_is_not_broken_but_may_be_fixed, make_file, drop_file) {
-  abbe_table_edit *edit = NULL;
+  HELD(abbe_table_edit, edit) = NULL;
   OK(abbe_table_edit_open(path, &edit, &error));
   OK(abbe_table_edit_set(edit, "flint", "model", "cauhcy", &error));
   REFUSED(ABBE_SCHEMA, "nothing was written: ", abbe_table_edit_save(edit, &error));
@@ -413,11 +407,10 @@ TEST_WITH(a_table_is_not_broken_but_may_be_fixed, make_file, drop_file) {
   OK(abbe_table_edit_set(edit, "a", "coefficients", "[1.5]", &error));
   OK(abbe_table_edit_save(edit, &error)); /* b is still wrong: one fix at a time */
   REFUSED(ABBE_SCHEMA, "", abbe_table_edit_check(edit, &error));
-  abbe_table_edit_free(edit);
 }
 
 TEST_WITH(a_new_table_begins_with_a_record, make_file, drop_file) {
-  abbe_table_edit *edit = NULL;
+  HELD(abbe_table_edit, edit) = NULL;
   REFUSED(ABBE_IO, "is there already", abbe_table_edit_make(path, &edit, &error));
   unlink(path);
   OK(abbe_table_edit_make(path, &edit, &error));
@@ -427,11 +420,11 @@ TEST_WITH(a_new_table_begins_with_a_record, make_file, drop_file) {
                          &error));
   OK(abbe_table_edit_save(edit, &error));
   check_file("materials:\n  - {name: a, model: constant, coefficients: [1.5], source: s}\n");
-  abbe_table_edit_free(edit);
 }
 
 TEST(a_record_moves_from_table_to_table) {
-  abbe_table_edit *from = parse(two), *to = parse("materials: [{name: a}]\n");
+  abbe_table_edit *from = parse(two);
+  HELD(abbe_table_edit, to) = parse("materials: [{name: a}]\n");
   FREED char *text = NULL;
   OK(abbe_table_edit_record(from, "crown", &text, &error));
   assert_string_equal(text, "name: crown # a crown\nmodel: cauchy\n"
@@ -442,5 +435,4 @@ TEST(a_record_moves_from_table_to_table) {
                       "materials: [{name: a}, {name: crown, model: cauchy, coefficients: [1.5220, "
                       "0.00459], range_nm: [380, 780], source: \"[Somebody] p. 3\"}]\n");
   abbe_table_edit_free(from);
-  abbe_table_edit_free(to);
 }

@@ -40,8 +40,8 @@ TEST(wrong_values_change_and_nothing_else) {
                       "    coefficients: [1.553619, 0.00531]\n"
                       "    range_nm: [380, 780] # um?\n"
                       "    source: a book\n"
-                      "  - {name: good, model: cauchy, coefficients: [1.50, 0.0040], "
-                      "range_nm: [380, 780], source: s1}\n");
+                      "  - {name: good, model: cauchy, coefficients: [1.50, 0.0040], range_nm: "
+                      "[380, 780], source: s1}\n");
   fix = fix_of(edit);
   assert_int_equal(fix.fixed, 0);
   abbe_table_edit_free(edit);
@@ -62,14 +62,13 @@ TEST(a_fix_brings_out_the_next) {
 }
 
 TEST(doubt_and_shared_names_are_left_alone) {
-  const char *const text =
-      "materials:\n"
-      "- {name: mystery, model: cauchy, coefficients: [1.5690, 0.00531], range_nm: [380, 780], "
-      "source: s1}\n"
-      "- {name: twin, model: cauchy, coefficients: [1.5046, 4200], range_nm: [380, 780], source: "
-      "s1}\n"
-      "- {name: TWIN, model: cauchy, coefficients: [1.6046, 6200], range_nm: [380, 780], source: "
-      "s1}\n";
+  const char *const text = "materials:\n"
+                           "- {name: mystery, model: cauchy, coefficients: [1.5690, 0.00531], "
+                           "range_nm: [380, 780], source: s1}\n"
+                           "- {name: twin, model: cauchy, coefficients: [1.5046, 4200], range_nm: "
+                           "[380, 780], source: s1}\n"
+                           "- {name: TWIN, model: cauchy, coefficients: [1.6046, 6200], range_nm: "
+                           "[380, 780], source: s1}\n";
   abbe_table_edit *edit = open_edit(text);
   abbe_table_fix fix = fix_of(edit);
   size_t size = 0;

@@ -29,10 +29,9 @@ static bool noted(const abbe_report *report, const char *part) {
 
 /* n and the attenuation of every shipped row are those of the row, and what is lost is said. */
 TEST(the_shipped_table_becomes_a_catalogue) {
-  OWNED(abbe_material_table, table) = {0};
-  OK(abbe_material_table_load(NULL, &table, &error));
+  MADE(abbe_material_table, table, abbe_material_table_load(NULL, &table, &error));
   OWNED(abbe_report, report) = {0};
-  abbe_material_table back = reread(&table, &report);
+  OWNED(abbe_material_table, back) = reread(&table, &report);
   size_t glasses = 0;
   for (size_t i = 0; i < table.count; i++) {
     if (abbe_material_is_conductor(&table.material[i])) continue;
@@ -51,16 +50,13 @@ TEST(the_shipped_table_becomes_a_catalogue) {
     double n_d = abbe_dispersion_describe(&a->dispersion).n_d;
     assert_near(b->published_n_d, n_d > 1 ? n_d : 0, 5e-6); /* 1 is how catalogues say nothing */
   }
-  char count[80];
   assert_int_equal(back.count, glasses);
-  snprintf(count, sizeof count, "no place for a description (%zu materials: ", glasses);
-  assert_true(noted(&report, count));
+  assert_true(noted(&report, printed("no place for a description (%zu materials: ", glasses)));
   assert_true(noted(&report, "no place for a warning"));
   assert_true(noted(&report, "no place for recorded fits"));
   assert_true(noted(&report, "cannot allow use outside"));
   assert_true(noted(&report, "it is a conductor"));
   assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], table.count - glasses);
-  abbe_material_table_free(&back);
 }
 
 /* A table that came from a catalogue goes back to one and comes again, the same in all that both
@@ -75,7 +71,7 @@ TEST(a_catalogue_survives_the_way_through_a_table) {
     OK(abbe_material_table_append(&table, &m, &error));
   }
   OWNED(abbe_report, report) = {0};
-  abbe_material_table once = reread(&table, &report), twice = reread(&once, NULL);
+  OWNED(abbe_material_table, once) = reread(&table, &report), twice = reread(&once, NULL);
   assert_int_equal(once.count + report.kinds[ABBE_NOTE_SKIPPED], table.count);
   assert_int_equal(twice.count, once.count);
   for (size_t i = 0; i < once.count; i++) {
@@ -93,8 +89,6 @@ TEST(a_catalogue_survives_the_way_through_a_table) {
     assert_true(same_number(a->temperature_c, b->temperature_c, 0));
   }
   assert_true(noted(&report, "no place for the temperatures of expansions"));
-  abbe_material_table_free(&twice);
-  abbe_material_table_free(&once);
 }
 
 /* The lines of `text` that begin with IT, each number in its shortest form. */
@@ -121,8 +115,8 @@ TEST(transmittances_come_back_to_the_last_digit) {
       "IT 0.5 0.999 10\nIT 0.6 0.99 10\nIT 0.7 0.97 10\nIT 0.8 0.3 1\nIT 0.9 0.012 2\n"
       "NM C 2 0 1.5168 64.17\nCD 1.03961212 0.00600069867 0 0 0 0\nLD 0.3 2.5\n"
       "IT 0.4 0.91 1.9\nIT 0.5 0.93 1.9\nIT 0.6 1 1.9\n";
-  OWNED(abbe_material_table, table);
-  OK(abbe_agf_parse(text, strlen(text), "m.agf", &table, NULL, &error));
+  MADE(abbe_material_table, table,
+       abbe_agf_parse(text, strlen(text), "m.agf", &table, NULL, &error));
   assert_int_equal(table.count, 3);
   FREED char *written = NULL;
   size_t size = 0;
@@ -145,47 +139,37 @@ TEST(absorption_is_carried_to_the_last_bit) {
     lambda_nm[i] = 400 + 0.05 * i;
     attenuation[i] = i % 50 == 0 ? 0 : pow(10, random_between(&random, -5, 9));
   }
-  abbe_material m = {.name = (char[]){"m"},
-                     .source = (char[]){"s"},
-                     .min_nm = 400,
-                     .max_nm = 700,
-                     .temperature_c = NAN,
-                     .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}}};
+  abbe_material m =
+      FIELDS(.name = (char[]){"m"}, .source = (char[]){"s"}, .min_nm = 400, .max_nm = 700,
+             .temperature_c = NAN,
+             .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}});
   OK(abbe_spectrum_make(lambda_nm, attenuation, COUNT, ABBE_INTERPOLATION_LINEAR, &m.attenuation,
                         &error));
   const abbe_material_table table = {.count = 1, .material = &m};
-  abbe_material_table back = reread(&table, NULL);
+  OWNED(abbe_material_table, back) = reread(&table, NULL);
   const double *now = abbe_spectrum_value(back.material[0].attenuation);
   size_t changed = 0;
   for (int i = 0; i < COUNT; i++) changed += now[i] != attenuation[i];
   assert_int_equal(changed, 0);
-  abbe_material_table_free(&back);
   abbe_spectrum_free(m.attenuation);
 }
 
 TEST(names_and_failures_are_told) {
   abbe_material list[2] = {
-      {.name = (char[]){"two words, more"},
-       .source = (char[]){"line\nbreak"},
-       .min_nm = 400,
-       .max_nm = 700,
-       .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}}},
-      {.name = (char[]){"bad"},
-       .source = (char[]){"s"},
-       .min_nm = 400,
-       .max_nm = 700,
-       .dispersion = {.model = ABBE_DISPERSION_CAUCHY, .count = 1, .c = {-1}}}};
+      FIELDS(.name = (char[]){"two words, more"}, .source = (char[]){"line\nbreak"}, .min_nm = 400,
+             .max_nm = 700,
+             .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}}),
+      FIELDS(.name = (char[]){"bad"}, .source = (char[]){"s"}, .min_nm = 400, .max_nm = 700,
+             .dispersion = {.model = ABBE_DISPERSION_CAUCHY, .count = 1, .c = {-1}})};
   abbe_material_table table = {.count = 2, .material = list};
-  abbe_report report = {0};
-  abbe_material_table back = reread(&table, &report);
+  OWNED(abbe_report, report) = {0};
+  OWNED(abbe_material_table, back) = reread(&table, &report);
   assert_int_equal(back.count, 1);
   assert_string_equal(back.material[0].name, "two_words,_more");
   assert_string_equal(back.material[0].source, "line break");
   assert_int_equal(back.material[0].dispersion.model, ABBE_DISPERSION_CONSTANT);
   assert_true(noted(&report, "become '_' (1 material: two words, more)"));
   assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], 1);
-  abbe_report_free(&report);
-  abbe_material_table_free(&back);
   FILE *full = fopen("/dev/full", "w");
   assert_int_equal(abbe_agf_write(&table, full, NULL, NULL), ABBE_IO);
   fclose(full);

@@ -227,24 +227,20 @@ TEST(two_catalogues_glasses_are_kept_apart) {
 }
 
 TEST(long_names_are_cut_before) {
-  char name[80], path[100], text[200];
+  char name[80];
   memset(name, 'n', 70);
   name[70] = '\0';
   folder("a-folder-of-some-length");
   folder("b\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4-folder-of-some-length");
-  snprintf(text, sizeof text, "NM %s 2 0 1.5 60\nCD 1.2 0.01\nLD 0.3 2\n", name);
+  const char *text = printed("NM %s 2 0 1.5 60\nCD 1.2 0.01\nLD 0.3 2\n", name);
   file("a-folder-of-some-length/x.agf", text);
-  snprintf(path, sizeof path,
-           "b\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4-folder-of-some-length/x.agf");
-  file(path, text);
+  file(printed("b\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4-folder-of-some-length/x.agf"), text);
   const char *const paths[] = {root};
   runs(paths, 1, NULL);
   assert_int_equal(table.count, 2);
-  char wanted[120];
-  snprintf(wanted, sizeof wanted, "a-folder--%s", name);
-  assert_string_equal(table.material[0].name, wanted);
-  snprintf(wanted, sizeof wanted, "b\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4-%s", name);
-  assert_string_equal(table.material[1].name, wanted);
+  assert_string_equal(table.material[0].name, printed("a-folder--%s", name));
+  assert_string_equal(table.material[1].name,
+                      printed("b\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4-%s", name));
   for (size_t i = 0; i < 2; i++) OK(abbe_material_check(&table.material[i], &error));
   runs(paths, 1, "a very long prefix that does not fit");
   assert_true(noted(ABBE_NOTE_RENAMED, "with the whole prefix its name would be too long"));

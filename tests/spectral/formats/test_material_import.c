@@ -36,11 +36,10 @@ TEST(remarks_decide_nothing) {
                                  "C",
                                  "500 1.5", "materials: one", "NM is the unit", "0.5, 1.5, 0.1"};
   for (size_t i = 0; i < sizeof remarks / sizeof remarks[0]; i++) {
-    char text[400];
-    snprintf(text, sizeof text, "COMMENTS: |\n  %s\n%s", remarks[i], RII);
+    const char *text = printed("COMMENTS: |\n  %s\n%s", remarks[i], RII);
     assert_int_equal(abbe_import_detect(text, strlen(text)), ABBE_IMPORT_RII);
-    OWNED(abbe_material_table, table) = {0};
-    OK(abbe_import_parse(text, strlen(text), "A/nk/B.yml", NULL, &table, NULL, &error));
+    MADE(abbe_material_table, table,
+         abbe_import_parse(text, strlen(text), "A/nk/B.yml", NULL, &table, NULL, &error));
     assert_string_equal(table.material[0].comment, remarks[i]);
   }
   static const char dated[] = "2012 11 30, the maker's own\n" AGF;
@@ -76,13 +75,13 @@ TEST(all_kinds_go_into_one_table) {
 }
 
 TEST(options_name_what_the_file_does_not) {
-  OWNED(abbe_material_table, table) = {0};
   const abbe_import_options options = {.format = ABBE_IMPORT_CSV,
                                        .name = "prism",
                                        .source = "own measurement",
                                        .csv = {.unit_nm = 1000, .third = ABBE_CSV_K}};
   const char text[] = "0.4 1.5 1e-6\n0.5 1.49 0\n";
-  OK(abbe_import_parse(text, strlen(text), "x", &options, &table, NULL, &error));
+  MADE(abbe_material_table, table,
+       abbe_import_parse(text, strlen(text), "x", &options, &table, NULL, &error));
   assert_string_equal(table.material[0].name, "prism");
   assert_string_equal(table.material[0].source, "own measurement");
   assert_near(table.material[0].max_nm, 500, 0);
@@ -91,10 +90,9 @@ TEST(options_name_what_the_file_does_not) {
 
 static void refuses(const char *text, const abbe_import_options *options, abbe_result code,
                     const char *part) {
-  abbe_material_table table = {0};
+  OWNED(abbe_material_table, table) = {0};
   REFUSED(code, part, abbe_import_parse(text, strlen(text), "x", options, &table, NULL, &error));
   assert_int_equal(table.count, 0);
-  abbe_material_table_free(&table);
 }
 
 TEST(what_cannot_be_read_is_named) {

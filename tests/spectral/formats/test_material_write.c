@@ -20,15 +20,13 @@ static abbe_material_table reread(const abbe_material_table *table, char **text)
 TEST(shipped_tables_come_back_the_same) {
   const char *const names[] = {"default", "thesis"};
   for (int t = 0; t < 2; t++) {
-    OWNED(abbe_material_table, table);
-    OK(abbe_material_table_load(names[t], &table, &error));
+    MADE(abbe_material_table, table, abbe_material_table_load(names[t], &table, &error));
     FREED char *text = NULL;
-    abbe_material_table back = reread(&table, &text);
+    OWNED(abbe_material_table, back) = reread(&table, &text);
     assert_int_equal(back.count, table.count);
     assert_string_equal(back.description, table.description);
     for (size_t i = 0; i < back.count; i++)
       assert_same_record(&table.material[i], &back.material[i]);
-    abbe_material_table_free(&back);
   }
 }
 
@@ -42,11 +40,10 @@ TEST(random_records_come_back_the_same) {
       OK(abbe_material_table_append(&table, &m, &error));
     }
     FREED char *text = NULL;
-    abbe_material_table back = reread(&table, &text);
+    OWNED(abbe_material_table, back) = reread(&table, &text);
     assert_int_equal(back.count, 25);
     for (size_t i = 0; i < back.count; i++)
       assert_same_record(&table.material[i], &back.material[i]);
-    abbe_material_table_free(&back);
   }
 }
 
@@ -80,36 +77,28 @@ TEST(odd_texts_come_back_the_same) {
                              "\xef\xbf\xbe",
                              "Schott\xc2\xae"};
   for (size_t i = 0; i < sizeof odd / sizeof odd[0]; i++) {
-    abbe_material m = {.name = strdup("x"),
-                       .source = strdup("s"),
-                       .comment = strdup(odd[i]),
-                       .min_nm = 1,
-                       .max_nm = 1e6,
-                       .temperature_c = NAN,
-                       .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}}};
-    OWNED(abbe_material_table, table) = {0};
-    OK(abbe_material_table_append(&table, &m, &error));
+    abbe_material m =
+        FIELDS(.name = strdup("x"), .source = strdup("s"), .comment = strdup(odd[i]), .min_nm = 1,
+               .max_nm = 1e6, .temperature_c = NAN,
+               .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}});
+    MADE(abbe_material_table, table, abbe_material_table_append(&table, &m, &error));
     FREED char *text = NULL;
-    abbe_material_table back = reread(&table, &text);
+    OWNED(abbe_material_table, back) = reread(&table, &text);
     assert_string_equal(back.material[0].comment, odd[i]);
-    abbe_material_table_free(&back);
   }
 }
 
 TEST(what_could_not_be_read_again_is_not_written) {
-  abbe_material m = {.name = (char[]){"x"},
-                     .source = (char[]){"s"},
-                     .min_nm = 400,
-                     .max_nm = 700,
-                     .dispersion = {.model = ABBE_DISPERSION_CAUCHY, .count = 1, .c = {-1}}};
-  char *text = NULL;
+  abbe_material m =
+      FIELDS(.name = (char[]){"x"}, .source = (char[]){"s"}, .min_nm = 400, .max_nm = 700,
+             .dispersion = {.model = ABBE_DISPERSION_CAUCHY, .count = 1, .c = {-1}});
+  FREED char *text = NULL;
   size_t size = 0;
   FILE *to = open_memstream(&text, &size);
   REFUSED(ABBE_INVALID_ARGUMENT, "x: its cauchy formula has no real index",
           abbe_material_write(&m, to, &error));
   fclose(to);
   assert_int_equal(size, 0);
-  free(text);
   FILE *full = fopen("/dev/full", "w");
   m.dispersion.c[0] = 1.5;
   abbe_material_table table = {.count = 1, .material = &m};
@@ -139,7 +128,7 @@ TEST(too_large_a_table_is_refused) {
                           &list[i].dispersion.table, &error));
   }
   const abbe_material_table table = {.count = COUNT, .material = list};
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size = 0;
   FILE *to = open_memstream(&text, &size);
   REFUSED(ABBE_INVALID_ARGUMENT, "6 materials are ", abbe_material_table_write(&table, to, &error));
@@ -147,6 +136,5 @@ TEST(too_large_a_table_is_refused) {
   assert_contains(last_error.text, "a file that ends in .sqlite");
   fclose(to);
   assert_int_equal(size, 0);
-  free(text);
   for (int i = 0; i < COUNT; i++) abbe_dispersion_free(&list[i].dispersion);
 }

@@ -20,11 +20,9 @@ static const double gold_k[] = {1.849, 1.833, 2.081, 2.455, 2.863, 3.272, 3.697}
 enum { COUNT = 7 };
 
 static abbe_material gold(void) {
-  abbe_material m = {.name = strdup("gold"),
-                     .source = strdup("[JohnsonChristy1972]"),
-                     .min_nm = gold_nm[0],
-                     .max_nm = gold_nm[COUNT - 1],
-                     .temperature_c = NAN};
+  abbe_material m =
+      FIELDS(.name = strdup("gold"), .source = strdup("[JohnsonChristy1972]"), .min_nm = gold_nm[0],
+             .max_nm = gold_nm[COUNT - 1], .temperature_c = NAN);
   OK(abbe_conductor_make(gold_nm, gold_n, gold_k, COUNT, &m.dispersion, &error));
   OK(abbe_material_check(&m, &error));
   return m;
@@ -33,7 +31,7 @@ static abbe_material gold(void) {
 /* ---- n and k ---- */
 
 TEST(n_and_k_run_straight_between_the_points) {
-  abbe_material m = gold();
+  OWNED(abbe_material, m) = gold();
   double n = 0, k = 0;
   assert_true(abbe_material_is_conductor(&m));
   for (int i = 0; i < COUNT; i++) {
@@ -44,11 +42,10 @@ TEST(n_and_k_run_straight_between_the_points) {
   OK(abbe_material_nk(&m, (520.9 + 548.6) / 2, &n, &k, &error));
   assert_near(n, (0.62 + 0.43) / 2, 1e-13);
   assert_near(k, (2.081 + 2.455) / 2, 1e-13);
-  abbe_material_free(&m);
 }
 
 TEST(the_range_is_that_of_the_points) {
-  abbe_material m = gold();
+  OWNED(abbe_material, m) = gold();
   double n = 7, k = 8;
   REFUSED(ABBE_OUT_OF_RANGE, "gold has no n and k at 471 nm",
           abbe_material_nk(&m, 471, &n, &k, &error));
@@ -57,11 +54,10 @@ TEST(the_range_is_that_of_the_points) {
   assert_int_equal(abbe_material_nk(&m, NAN, &n, &k, NULL), ABBE_OUT_OF_RANGE);
   assert_near(n, 7, 0);
   assert_near(k, 8, 0);
-  abbe_material_free(&m);
 }
 
 TEST(glasses_and_metals_are_not_mistaken) {
-  abbe_material m = gold();
+  OWNED(abbe_material, m) = gold();
   double n = 7, k = 8;
   REFUSED(ABBE_UNSUPPORTED, "gold is a conductor", abbe_material_n(&m, 550, &n, &error));
   assert_true(isnan(abbe_dispersion_n(&m.dispersion, 550)));
@@ -69,15 +65,14 @@ TEST(glasses_and_metals_are_not_mistaken) {
   abbe_material_numbers numbers;
   abbe_material_numbers_make(&m, &numbers);
   assert_true(isnan(numbers.n_d) && isnan(numbers.v_d) && isnan(numbers.b_g));
-  abbe_material glass = {.name = "glass",
-                         .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}},
-                         .min_nm = 400,
-                         .max_nm = 700};
+  abbe_material glass =
+      FIELDS(.name = "glass",
+             .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}},
+             .min_nm = 400, .max_nm = 700);
   assert_false(abbe_material_is_conductor(&glass));
   REFUSED(ABBE_UNSUPPORTED, "glass is no conductor", abbe_material_nk(&glass, 550, &n, &k, &error));
   assert_false(abbe_dispersion_nk(&glass.dispersion, 550, &n, &k));
   assert_near(n, 7, 0);
-  abbe_material_free(&m);
 }
 
 TEST(points_that_are_none_are_refused) {
@@ -99,7 +94,7 @@ TEST(points_that_are_none_are_refused) {
 }
 
 TEST(a_conductor_has_nothing_of_a_glass) {
-  abbe_material m = gold();
+  OWNED(abbe_material, m) = gold();
   m.extrapolate = true;
   REFUSED(ABBE_INVALID_ARGUMENT, "gold: the model conductor has no use for 'extrapolate'",
           abbe_material_check(&m, &error));
@@ -112,15 +107,13 @@ TEST(a_conductor_has_nothing_of_a_glass) {
   m.fit[1].terms = 0;
   m.max_nm = 700;
   REFUSED(ABBE_INVALID_ARGUMENT, "wider than its points", abbe_material_check(&m, &error));
-  abbe_material_free(&m);
 }
 
 /* ---- in a table ---- */
 
 static void refuses(const char *rest, const char *part) {
-  char text[1024];
   abbe_material_table t;
-  snprintf(text, sizeof text, "materials:\n- name: x\n  source: s\n  model: conductor\n%s", rest);
+  const char *text = printed("materials:\n- name: x\n  source: s\n  model: conductor\n%s", rest);
   REFUSED(ABBE_SCHEMA, part, abbe_material_table_parse(text, strlen(text), "t.yaml", &t, &error));
 }
 
@@ -163,27 +156,25 @@ static void same_conductor(const abbe_material *a, const abbe_material *b) {
 }
 
 TEST(yaml_and_stores_keep_a_conductor) {
-  char *text = NULL, path[] = "/tmp/abbe-conductor-XXXXXX";
+  FREED char *text = NULL;
+  char path[] = "/tmp/abbe-conductor-XXXXXX";
   size_t size = 0;
   abbe_material m = gold();
   m.min_nm = 480; /* its range may be narrower */
-  abbe_material_table t = table_of(&m), back;
+  OWNED(abbe_material_table, t) = table_of(&m);
   FILE *to = open_memstream(&text, &size);
   OK(abbe_material_table_write(&t, to, &error));
   fclose(to);
   assert_contains(text, "    model: conductor\n    points: [\n      [471.4, 1.31, 1.849], [495.9,");
-  OK(abbe_material_table_parse(text, size, "t", &back, &error));
+  MADE(abbe_material_table, back, abbe_material_table_parse(text, size, "t", &back, &error));
   same_conductor(&t.material[0], &back.material[0]);
   abbe_material_table_free(&back);
-  free(text);
   to = fdopen(mkstemp(path), "w");
   OK(abbe_material_store_write(&t, to, &error));
   fclose(to);
   OK(abbe_material_store_read(path, NULL, 0, NULL, &back, &error));
   same_conductor(&t.material[0], &back.material[0]);
-  abbe_material_table_free(&back);
   unlink(path);
-  abbe_material_table_free(&t);
 }
 
 /* ---- in other forms ---- */
@@ -191,10 +182,10 @@ TEST(yaml_and_stores_keep_a_conductor) {
 TEST(refractiveindex_info_keeps_a_conductor) {
   FREED char *text = NULL;
   size_t size = 0;
-  abbe_material m = gold(), back;
-  OWNED(abbe_report, report) = {0};
+  OWNED(abbe_material, m) = gold();
+  abbe_material back;
   FILE *to = open_memstream(&text, &size);
-  OK(abbe_rii_write(&m, to, &report, &error));
+  MADE(abbe_report, report, abbe_rii_write(&m, to, &report, &error));
   fclose(to);
   assert_int_equal(report.count, 0);
   assert_contains(text, "  - type: tabulated nk\n    data: |\n        0.4714 1.31 1.849\n");
@@ -202,7 +193,6 @@ TEST(refractiveindex_info_keeps_a_conductor) {
   same_conductor(&m, &back);
   assert_int_equal(report.kinds[ABBE_NOTE_CHANGED], 1);
   abbe_material_free(&back);
-  abbe_material_free(&m);
 }
 
 /* Where light gets through most of the visible, k stays absorption; so it does beyond the visible,
@@ -215,8 +205,8 @@ TEST(what_is_no_metal_stays_transparent) {
       "DATA:\n  - type: tabulated n\n    data: |\n      0.4 1.5\n      0.7 1.4\n"
       "  - type: tabulated k\n    data: |\n      0.4 1.5\n      0.5 1.5\n      0.7 1.4\n"};
   for (int i = 0; i < 3; i++) {
-    OWNED(abbe_material, m);
-    OK(abbe_rii_parse(texts[i], strlen(texts[i]), "a.yml", "a", &m, NULL, &error));
+    MADE(abbe_material, m,
+         abbe_rii_parse(texts[i], strlen(texts[i]), "a.yml", "a", &m, NULL, &error));
     assert_false(abbe_material_is_conductor(&m));
     assert_non_null(m.attenuation);
   }
@@ -225,14 +215,13 @@ TEST(what_is_no_metal_stays_transparent) {
 TEST(csv_keeps_a_conductor) {
   char path[] = "/tmp/abbe-conductor-XXXXXX";
   abbe_material m = gold();
-  OWNED(abbe_material_table, back) = {0};
   OWNED(abbe_report, report) = {0};
   FILE *to = fdopen(mkstemp(path), "w");
   OK(abbe_csv_write(&m, NULL, to, NULL, &error));
   fclose(to);
   abbe_import_options options = {
       .format = ABBE_IMPORT_CSV, .name = "gold", .source = "[JohnsonChristy1972]"};
-  OK(abbe_import_load(path, &options, &back, &report, &error));
+  MADE(abbe_material_table, back, abbe_import_load(path, &options, &back, &report, &error));
   same_conductor(&m, &back.material[0]);
   abbe_material_free(&m);
   unlink(path);
@@ -240,30 +229,25 @@ TEST(csv_keeps_a_conductor) {
 
 TEST(catalogues_of_glass_leave_a_conductor_out) {
   abbe_material m = gold();
-  abbe_material_table t = table_of(&m);
+  OWNED(abbe_material_table, t) = table_of(&m);
   FREED char *text = NULL;
   size_t size = 0;
-  OWNED(abbe_report, report) = {0};
   FILE *to = open_memstream(&text, &size);
-  OK(abbe_agf_write(&t, to, &report, &error));
+  MADE(abbe_report, report, abbe_agf_write(&t, to, &report, &error));
   fclose(to);
   assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], 1);
   assert_contains(text, "CC");
   assert_null(strstr(text, "nan"));
-  abbe_material_table_free(&t);
 }
 
 /* ---- among glasses ---- */
 
 TEST(no_glass_is_near_a_conductor) {
   abbe_material m = gold();
-  abbe_material_table t = table_of(&m);
-  abbe_glass_distances d;
-  OK(abbe_glass_distance_to_numbers(&t, 1.5, 60, 0, &d, &error));
+  OWNED(abbe_material_table, t) = table_of(&m);
+  MADE(abbe_glass_distances, d, abbe_glass_distance_to_numbers(&t, 1.5, 60, 0, &d, &error));
   assert_int_equal(d.count, 0);
   assert_int_equal(d.skipped, 0);
-  abbe_glass_distances_free(&d);
-  abbe_material_table_free(&t);
 }
 
 TEST(a_change_of_k_is_told) {
@@ -273,25 +257,19 @@ TEST(a_change_of_k_is_told) {
   k[3] += 0.1;
   abbe_dispersion_free(&b.dispersion);
   OK(abbe_conductor_make(gold_nm, gold_n, k, COUNT, &b.dispersion, &error));
-  abbe_material_table first = table_of(&a), second = table_of(&b);
-  abbe_table_difference d;
-  OK(abbe_table_compare(&first, &second, &d, &error));
+  OWNED(abbe_material_table, first) = table_of(&a), second = table_of(&b);
+  MADE(abbe_table_difference, d, abbe_table_compare(&first, &second, &d, &error));
   assert_int_equal(d.row[0].parts, 1u << ABBE_ROW_PART_POINTS);
   assert_true(isnan(d.row[0].index.max));
   abbe_table_difference_free(&d);
   OK(abbe_table_compare(&first, &first, &d, &error));
   assert_int_equal(d.row[0].kind, ABBE_ROW_SAME);
-  abbe_table_difference_free(&d);
-  abbe_material_table_free(&first);
-  abbe_material_table_free(&second);
 }
 
 TEST(the_check_knows_a_conductor) {
-  abbe_material m = gold();
-  OWNED(abbe_findings, found) = {0};
-  OK(abbe_check_material(&m, NULL, &found, &error));
+  OWNED(abbe_material, m) = gold();
+  MADE(abbe_findings, found, abbe_check_material(&m, NULL, &found, &error));
   assert_int_equal(found.count, 1);
   assert_int_equal(found.finding[0].kind, ABBE_FINDING_DARK);
   assert_contains(found.finding[0].fix, "points that reach further");
-  abbe_material_free(&m);
 }

@@ -9,7 +9,7 @@ static abbe_material_table parse(const char *text) {
 
 /* Three indices, the record's own being the middle one or given with the others. */
 TEST(a_biaxial_crystal_has_three_indices) {
-  abbe_material_table t = parse(
+  OWNED(abbe_material_table, t) = parse(
       "materials:\n- {name: a, model: constant, coefficients: [1.61], source: s,\n"
       "   biaxial: {alpha: {model: constant, coefficients: [1.6]},\n"
       "     gamma: {model: tabulated, points: [[1, 1.63], [1000000, 1.62]]}},\n"
@@ -32,7 +32,6 @@ TEST(a_biaxial_crystal_has_three_indices) {
     }
   }
   assert_near(abbe_material_attenuation(&t.material[0], 500), 2, 1e-12);
-  abbe_material_table_free(&t);
 }
 
 TEST(three_indices_that_cannot_be_are_refused) {
@@ -57,16 +56,15 @@ TEST(three_indices_that_cannot_be_are_refused) {
        "'model' stands beside 'biaxial'"},
       {"biaxial: {" ALPHA ", " GAMMA "}, extraordinary: {model: constant, coefficients: [1.7]}",
        "and not both"},
-      {"biaxial: {" ALPHA ", " GAMMA "}, absorption: {ordinary: {k: [[500, 1]]}, extraordinary: "
-       "{k: [[500, 1]]}}",
+      {"biaxial: {" ALPHA ", " GAMMA
+       "}, absorption: {ordinary: {k: [[500, 1]]}, extraordinary: {k: [[500, 1]]}}",
        "of a biaxial crystal goes along 'x', 'y' and 'z'"},
   };
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    char text[1024];
     abbe_material_table t;
-    snprintf(text, sizeof text,
-             "materials:\n- {name: a, model: constant, coefficients: [1.65], source: s, %s}\n",
-             rows[i].text);
+    const char *text =
+        printed("materials:\n- {name: a, model: constant, coefficients: [1.65], source: s, %s}\n",
+                rows[i].text);
     REFUSED(ABBE_SCHEMA, rows[i].part,
             abbe_material_table_parse(text, strlen(text), "t.yaml", &t, &error));
   }
@@ -79,12 +77,12 @@ TEST(absorption_goes_by_axes) {
 #define CRYSTAL                                                                                    \
   "model: constant, coefficients: [1.6], source: s,\n"                                             \
   "   extraordinary: {model: constant, coefficients: [1.5]},\n   absorption: "
-  abbe_material_table t =
+  OWNED(abbe_material_table, t) =
       parse("materials:\n"
             "- {name: a, " CRYSTAL "{ordinary: {attenuation_per_m: [[400, 10], [500, 20]]},\n"
             "     extraordinary: {colour: [0.9, 0.25, 1], distance_m: 0.02}}}\n"
-            "- {name: b, " CRYSTAL "{x: {k: [[400, 1e-7], [500, 2e-7]]}, "
-            "y: {k: [[400, 1e-7], [500, 2e-7]]},\n"
+            "- {name: b, " CRYSTAL
+            "{x: {k: [[400, 1e-7], [500, 2e-7]]}, y: {k: [[400, 1e-7], [500, 2e-7]]},\n"
             "     z: {transmittance: [[400, 0.5]], thickness_m: 0.01}}}\n");
   assert_true(abbe_material_is_pleochroic(&t.material[0]));
   assert_near(abbe_material_attenuation_along(&t.material[0], 0, 450), 15, 1e-13);
@@ -94,7 +92,6 @@ TEST(absorption_goes_by_axes) {
               1e-10);
   assert_null(t.material[1].attenuation_yz[0]);
   assert_near(abbe_material_attenuation_along(&t.material[1], 2, 600), log(2) / 0.01, 1e-10);
-  abbe_material_table_free(&t);
 }
 
 TEST(absorption_that_no_axes_have_is_refused) {
@@ -116,9 +113,8 @@ TEST(absorption_that_no_axes_have_is_refused) {
        "it absorbs by direction, and has one index in all directions"},
   };
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    char text[1024];
     abbe_material_table t;
-    snprintf(text, sizeof text, "materials:\n- {name: a, %s}\n", rows[i].text);
+    const char *text = printed("materials:\n- {name: a, %s}\n", rows[i].text);
     REFUSED(ABBE_SCHEMA, rows[i].part,
             abbe_material_table_parse(text, strlen(text), "t.yaml", &t, &error));
   }

@@ -15,8 +15,8 @@ TEST(numbers_find_their_own_glass) {
   for (size_t i = 0; i < shipped.count; i++) {
     abbe_dispersion_numbers own = abbe_dispersion_describe(&shipped.material[i].dispersion);
     if (!(own.n_d > 1)) continue; /* air, metals */
-    abbe_glass_distances d;
-    OK(abbe_glass_distance_to_numbers(&shipped, own.n_d, own.v_d, 3, &d, &error));
+    MADE(abbe_glass_distances, d,
+         abbe_glass_distance_to_numbers(&shipped, own.n_d, own.v_d, 3, &d, &error));
     assert_int_equal(d.count, 3);
     const abbe_dispersion_numbers first =
         abbe_dispersion_describe(&shipped.material[d.nearest[0].index].dispersion);
@@ -25,7 +25,6 @@ TEST(numbers_find_their_own_glass) {
     assert_true(d.nearest[0].rms < 1e-9);
     assert_near(d.nearest[0].n_d, own.n_d, 0);
     for (size_t k = 1; k < d.count; k++) assert_true(d.nearest[k].rms >= d.nearest[k - 1].rms);
-    abbe_glass_distances_free(&d);
     abbe_glass_distances_free(&d);
   }
 }
@@ -44,12 +43,10 @@ TEST(the_distance_is_a_difference_of_index) {
   }
   abbe_index_difference direct;
   OK(abbe_index_difference_of_curves(&pair[0], &pair[1], 380, 780, &direct, &error));
-  abbe_glass_distances d;
-  OK(abbe_glass_distance_to_numbers(&shipped, 1.52, 60, 0, &d, &error));
+  MADE(abbe_glass_distances, d, abbe_glass_distance_to_numbers(&shipped, 1.52, 60, 0, &d, &error));
   assert_int_equal(d.count + d.skipped, shipped_glasses());
   for (size_t i = 0; i < d.count; i++)
     if (d.nearest[i].index == 1) assert_near(d.nearest[i].rms, direct.rms, 1e-9);
-  abbe_glass_distances_free(&d);
 }
 
 /* SF11 and N-SF11 have the same n_d; the curve tells them apart, and so do a few exact points. */
@@ -57,9 +54,9 @@ TEST(curves_and_points_find_their_own_glass) {
   const char *const names[] = {"sf11", "n-sf11", "n-bk7", "cubic-zirconia"};
   for (int i = 0; i < 4; i++) {
     const abbe_material *m = NULL;
-    abbe_glass_distances d;
     OK(abbe_material_table_find(&shipped, names[i], &m, &error));
-    OK(abbe_glass_distance_to_curve(&shipped, &m->dispersion, 400, 700, 2, &d, &error));
+    MADE(abbe_glass_distances, d,
+         abbe_glass_distance_to_curve(&shipped, &m->dispersion, 400, 700, 2, &d, &error));
     assert_string_equal(name_of(&d, 0), names[i]);
     assert_near(d.nearest[0].max, 0, 0);
     assert_true(d.nearest[1].rms > 1e-6);
@@ -73,15 +70,14 @@ TEST(curves_and_points_find_their_own_glass) {
     OK(abbe_glass_distance_to_points(&shipped, &points, 1, &d, &error));
     assert_string_equal(name_of(&d, 0), names[i]);
     assert_true(d.nearest[0].rms < 5.1e-6);
-    abbe_glass_distances_free(&d);
   }
 }
 
 TEST(materials_without_data_there_are_skipped) {
-  abbe_glass_distances d;
   /* beyond 1129 nm water has no data and does not extrapolate */
-  OK(abbe_glass_distance_to_curve(&shipped, &shipped.material[1].dispersion, 500, 2000, 0, &d,
-                                  &error));
+  MADE(abbe_glass_distances, d,
+       abbe_glass_distance_to_curve(&shipped, &shipped.material[1].dispersion, 500, 2000, 0, &d,
+                                    &error));
   assert_true(d.skipped > 0);
   assert_int_equal(d.count + d.skipped, shipped_glasses());
   for (size_t i = 0; i < d.count; i++) assert_string_not_equal(name_of(&d, i), "water");
@@ -89,7 +85,6 @@ TEST(materials_without_data_there_are_skipped) {
   const abbe_material_table empty = {0};
   OK(abbe_glass_distance_to_numbers(&empty, 1.5, 60, 0, &d, &error));
   assert_int_equal(d.count, 0);
-  abbe_glass_distances_free(&d);
 }
 
 TEST(what_is_no_glass_is_refused) {

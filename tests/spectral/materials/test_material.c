@@ -49,7 +49,7 @@ TEST(no_real_index_is_an_error) {
 }
 
 TEST(attenuation_is_zero_or_more) {
-  abbe_material m = glass(NULL);
+  OWNED(abbe_material, m) = glass(NULL);
   assert_near(abbe_material_attenuation(&m, 500), 0, 0);
   OK(abbe_spectrum_make((double[]){400, 500, 600, 700}, (double[]){9, 0, 0, 9}, 4,
                         ABBE_INTERPOLATION_SPLINE, &m.attenuation, &error));
@@ -59,7 +59,6 @@ TEST(attenuation_is_zero_or_more) {
   assert_near(abbe_material_attenuation(&m, 550), 0, 0);
   abbe_material_free(&m);
   assert_null(m.attenuation);
-  abbe_material_free(&m);
 }
 
 TEST(only_what_can_be_read_again_may_stand_in_a_table) {
@@ -74,29 +73,17 @@ TEST(only_what_can_be_read_again_may_stand_in_a_table) {
        "names no source"},
       {{.name = (char[]){" x"}, .source = m.source, .dispersion = m.dispersion}, "is not a name"},
       {{.name = NULL, .source = m.source}, "is not a name"},
-      {{.name = m.name,
-        .source = m.source,
-        .dispersion = m.dispersion,
-        .min_nm = 700,
-        .max_nm = 400},
+      {FIELDS(.name = m.name, .source = m.source, .dispersion = m.dispersion, .min_nm = 700,
+              .max_nm = 400),
        "does not ascend"},
-      {{.name = m.name,
-        .source = m.source,
-        .dispersion = m.dispersion,
-        .min_nm = 0.5,
-        .max_nm = 400},
+      {FIELDS(.name = m.name, .source = m.source, .dispersion = m.dispersion, .min_nm = 0.5,
+              .max_nm = 400),
        "does not ascend"},
-      {{.name = m.name,
-        .source = m.source,
-        .min_nm = 400,
-        .max_nm = 700,
-        .dispersion = {.model = ABBE_DISPERSION_CAUCHY, .count = 1, .c = {-1}}},
+      {FIELDS(.name = m.name, .source = m.source, .min_nm = 400, .max_nm = 700,
+              .dispersion = {.model = ABBE_DISPERSION_CAUCHY, .count = 1, .c = {-1}}),
        "no real index at 400 nm"},
-      {{.name = m.name,
-        .source = m.source,
-        .min_nm = 400,
-        .max_nm = 700,
-        .dispersion = {.model = ABBE_DISPERSION_SELLMEIER, .count = 2}},
+      {FIELDS(.name = m.name, .source = m.source, .min_nm = 400, .max_nm = 700,
+              .dispersion = {.model = ABBE_DISPERSION_SELLMEIER, .count = 2}),
        "odd number"},
   };
   for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
@@ -116,7 +103,7 @@ TEST(metals_are_opaque) {
               {{2, 0, 0, 0}, false},
               {{1e-6, 1e-6, 1e-6, 1e-6}, false}};
   static const double nm[4] = {380, 580, 581, 780};
-  abbe_material m = glass(NULL);
+  OWNED(abbe_material, m) = glass(NULL);
   assert_false(abbe_material_is_opaque(&m, 380, 780));
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     double a[4];
@@ -126,5 +113,4 @@ TEST(metals_are_opaque) {
     abbe_spectrum_free(m.attenuation);
     m.attenuation = NULL;
   }
-  abbe_material_free(&m);
 }

@@ -12,8 +12,8 @@ static void setup(void) {
       "- {name: N-SF11, model: cauchy, coefficients: [1.7358, 0.0172], range_nm: [370, 2500], "
       "source: '[Schott2017]'}\n"
       "- {name: flat, model: constant, coefficients: [1.5], source: made up}\n"
-      "- {name: infrared, model: cauchy, coefficients: [2.4, 0.05], range_nm: [900, 9000], "
-      "source: paper}\n"
+      "- {name: infrared, model: cauchy, coefficients: [2.4, 0.05], range_nm: [900, 9000], source: "
+      "paper}\n"
       "- {name: fluorite, model: cauchy, coefficients: [1.4269, 0.0024], range_nm: [230, 9700], "
       "source: '[Malitson1963]'}\n";
   OK(abbe_material_table_parse(text, sizeof text - 1, "t", &table, &error));
@@ -25,13 +25,13 @@ static void teardown(void) {
 
 static void expect(abbe_material_query query, const char *wanted) {
   char got[400] = "";
-  size_t *rows = NULL, count = 0;
+  FREED size_t *rows = NULL;
+  size_t count = 0;
   OK(abbe_material_query_run(&table, &query, &rows, &count, &error));
   for (size_t i = 0; i < count; i++) {
     strcat(got, i > 0 ? " " : "");
     strcat(got, table.material[rows[i]].name);
   }
-  free(rows);
   assert_string_equal(got, wanted);
 }
 

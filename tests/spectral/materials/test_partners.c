@@ -15,22 +15,18 @@ static const char text[] = "materials:\n" GLASS(
         GLASS("n-sf5", "1.52481889, 0.011254756, 0.187085527, 0.0588995392, 1.42729015, 129.141675")
             GLASS("f2",
                   "1.34533359, 0.00997743871, 0.209073176, 0.0470450767, 0.937357162, 111.886764")
-                GLASS("f2-again",
-                      "1.34533359, 0.00997743871, 0.209073176, 0.0470450767, 0.937357162, "
-                      "111.886764")
-                    GLASS("n-fk51a",
-                          "0.971247817, 0.00472301995, 0.216901417, 0.0153575612, 0.904651666, "
-                          "168.68133")
-                        GLASS("n-kzfs11",
-                              "1.3322245, 0.0084029848, 0.28924161, 0.034423972, 1.15161734, "
-                              "88.4310532")
-                            GLASS("n-sf6",
-                                  "1.77931763, 0.0133714182, 0.338149866, 0.0617533621, "
-                                  "2.08734474, 174.01759") "- {name: plain, model: constant, "
-                                                           "coefficients: [1.5], source: made up}\n"
-                                                           "- {name: two-terms, model: cauchy, "
-                                                           "coefficients: [1.5, 0.004], range_nm: "
-                                                           "[300, 900], source: made up}\n";
+                GLASS("f2-again", "1.34533359, 0.00997743871, 0.209073176, 0.0470450767, "
+                                  "0.937357162, 111.886764")
+                    GLASS("n-fk51a", "0.971247817, 0.00472301995, 0.216901417, 0.0153575612, "
+                                     "0.904651666, 168.68133") GLASS(
+                        "n-kzfs11",
+                        "1.3322245, 0.0084029848, 0.28924161, 0.034423972, 1.15161734, 88.4310532")
+                        GLASS("n-sf6",
+                              "1.77931763, 0.0133714182, 0.338149866, 0.0617533621, 2.08734474, "
+                              "174.01759") "- {name: plain, model: constant, coefficients: [1.5], "
+                                           "source: made up}\n"
+                                           "- {name: two-terms, model: cauchy, coefficients: [1.5, "
+                                           "0.004], range_nm: [300, 900], source: made up}\n";
 
 static abbe_material_table table;
 
@@ -45,14 +41,13 @@ static void unload(void) {
 GROUP(load, unload);
 
 static abbe_glass_partner partner_of(const char *name, const char *partner, const char *third) {
-  abbe_glass_partners p;
   const abbe_material *with = third != NULL ? find_material(&table, third) : NULL;
-  OK(abbe_glass_partners_find(&table, find_material(&table, name), with, 100, &p, &error));
+  MADE(abbe_glass_partners, p,
+       abbe_glass_partners_find(&table, find_material(&table, name), with, 100, &p, &error));
   abbe_glass_partner found = {0};
   for (size_t i = 0; i < p.count; i++)
     if (strcmp(p.partner[i].material->name, partner) == 0) found = p.partner[i];
   assert_non_null(found.material);
-  abbe_glass_partners_free(&p);
   return found;
 }
 
@@ -131,11 +126,10 @@ TEST(a_double_that_is_for_sale_stands_for_both) {
     abbe_material f2[2] = {*find_material(&table, "f2"), *find_material(&table, "f2-again")};
     for (int i = 0; i < 2; i++) f2[i].catalogue.status = i == sold ? standard : obsolete;
     const abbe_material_table two = {.material = f2, .count = 2};
-    abbe_glass_partners p;
-    OK(abbe_glass_partners_find(&two, find_material(&table, "n-bk7"), NULL, 12, &p, &error));
+    MADE(abbe_glass_partners, p,
+         abbe_glass_partners_find(&two, find_material(&table, "n-bk7"), NULL, 12, &p, &error));
     assert_int_equal(p.count, 1);
     assert_int_equal(p.partner[0].doubles, 1);
     assert_string_equal(p.partner[0].material->name, f2[sold].name);
-    abbe_glass_partners_free(&p);
   }
 }

@@ -14,14 +14,13 @@ static abbe_material_table parse(const char *text) {
 #define C "{name: c, model: tabulated, points: [[400, 1.5], [500, 1.4]], source: s}"
 
 TEST(rows_are_matched) {
-  abbe_material_table first = parse("materials: [" A ", " B ", " C "]");
-  abbe_material_table second =
+  OWNED(abbe_material_table, first) = parse("materials: [" A ", " B ", " C "]");
+  OWNED(abbe_material_table, second) =
       parse("materials:\n- {name: new, model: constant, coefficients: [2], source: s}\n"
             "- {name: B2, model: constant, coefficients: [1.6], source: other}\n"
             "- {name: A, model: cauchy, coefficients: [1.501, 0.004], range_nm: [300, 700], "
             "source: s}\n");
-  abbe_table_difference d;
-  OK(abbe_table_compare(&first, &second, &d, &error));
+  MADE(abbe_table_difference, d, abbe_table_compare(&first, &second, &d, &error));
   assert_int_equal(d.count, 4);
   assert_int_equal(d.row[0].kind, ABBE_ROW_CHANGED);
   assert_int_equal(d.row[0].parts, 1u << ABBE_ROW_PART_COEFFICIENTS | 1u << ABBE_ROW_PART_RANGE);
@@ -40,20 +39,13 @@ TEST(rows_are_matched) {
   assert_string_equal(d.row[3].second->name, "new");
   assert_int_equal(d.kinds[ABBE_ROW_CHANGED], 1);
   assert_int_equal(d.kinds[ABBE_ROW_SAME], 0);
-  abbe_table_difference_free(&d);
-  abbe_material_table_free(&first);
-  abbe_material_table_free(&second);
 }
 
 TEST(a_table_is_the_same_as_itself) {
-  OWNED(abbe_material_table, first);
-  OWNED(abbe_material_table, second);
-  abbe_table_difference d;
-  OK(abbe_material_table_load("default", &first, &error));
-  OK(abbe_material_table_load("default", &second, &error));
-  OK(abbe_table_compare(&first, &second, &d, &error));
+  MADE(abbe_material_table, first, abbe_material_table_load("default", &first, &error));
+  MADE(abbe_material_table, second, abbe_material_table_load("default", &second, &error));
+  MADE(abbe_table_difference, d, abbe_table_compare(&first, &second, &d, &error));
   assert_int_equal(d.kinds[ABBE_ROW_SAME], first.count);
-  abbe_table_difference_free(&d);
 }
 
 /* One key changed at a time is one part that differs, and no other. */
@@ -85,13 +77,9 @@ TEST(each_part_is_seen) {
     for (int k = 0; k < 2; k++)
       snprintf(text[k], sizeof text[k], "materials: [{%s%s%s}]", base, points,
                k == 0 ? cases[i].before : cases[i].after);
-    abbe_material_table first = parse(text[0]), second = parse(text[1]);
-    abbe_table_difference d;
-    OK(abbe_table_compare(&first, &second, &d, &error));
+    OWNED(abbe_material_table, first) = parse(text[0]), second = parse(text[1]);
+    MADE(abbe_table_difference, d, abbe_table_compare(&first, &second, &d, &error));
     if (d.row[0].parts != 1u << cases[i].part)
       fail_msg("%s: %x", abbe_row_part_name(cases[i].part), d.row[0].parts);
-    abbe_table_difference_free(&d);
-    abbe_material_table_free(&first);
-    abbe_material_table_free(&second);
   }
 }

@@ -47,9 +47,8 @@ static abbe_material_table read_all(void) {
 }
 
 static abbe_material_table table_of(const char *records) {
-  char text[2048];
   abbe_material_table table;
-  snprintf(text, sizeof text, "description: three\nmaterials:\n%s", records);
+  const char *text = printed("description: three\nmaterials:\n%s", records);
   OK(abbe_material_table_parse(text, strlen(text), "t", &table, &error));
   return table;
 }
@@ -60,9 +59,8 @@ static abbe_material_table table_of(const char *records) {
 #define C "- {name: c, model: constant, coefficients: [1.6], source: s}\n"
 
 static void write_three(void) {
-  abbe_material_table table = table_of(A B C);
+  OWNED(abbe_material_table, table) = table_of(A B C);
   write_store(&table);
-  abbe_material_table_free(&table);
 }
 
 /* Asks the file as an outside program does. */
@@ -97,7 +95,7 @@ TEST(every_record_comes_back_the_same) {
   table.description = strdup("it's \"all\"");
   write_store(&table);
   assert_true(abbe_material_store_is(path));
-  abbe_material_table back = read_all();
+  OWNED(abbe_material_table, back) = read_all();
   assert_int_equal(back.count, table.count);
   assert_string_equal(back.description, table.description);
   assert_string_equal(back.path, path);
@@ -105,17 +103,14 @@ TEST(every_record_comes_back_the_same) {
     assert_same_record(&table.material[i], &back.material[i]);
     assert_int_equal(back.material[i].line, i + 1);
   }
-  abbe_material_table_free(&back);
 }
 
 TEST(the_shipped_table_comes_back_the_same) {
-  OWNED(abbe_material_table, table);
-  OK(abbe_material_table_load(NULL, &table, &error));
+  MADE(abbe_material_table, table, abbe_material_table_load(NULL, &table, &error));
   write_store(&table);
-  abbe_material_table back = read_all();
+  OWNED(abbe_material_table, back) = read_all();
   assert_int_equal(back.count, table.count);
   for (size_t i = 0; i < back.count; i++) assert_same_record(&table.material[i], &back.material[i]);
-  abbe_material_table_free(&back);
 }
 
 /* ---- rows by name ---- */
@@ -125,9 +120,8 @@ TEST(one_name_reads_one_row) {
   write_three();
   run_sql("UPDATE materials SET points = x'00' WHERE name = 'B'");
   const char *const names[] = {"C", "c", "A", "nobody"};
-  abbe_material_table table;
   const abbe_material *m = NULL;
-  OK(abbe_material_table_load_named(path, names, 4, &table, &error));
+  MADE(abbe_material_table, table, abbe_material_table_load_named(path, names, 4, &table, &error));
   assert_int_equal(table.count, 2);
   OK(abbe_material_table_find(&table, "A", &m, &error));
   assert_int_equal(m->line, 1);
@@ -136,16 +130,14 @@ TEST(one_name_reads_one_row) {
   /* of what it does not have it names the nearest, among all */
   assert_int_equal(abbe_material_table_find(&table, "nobody", &m, NULL), ABBE_NOT_FOUND);
   REFUSED(ABBE_NOT_FOUND, "did you mean 'B'?", abbe_material_table_find(&table, "bb", &m, &error));
-  abbe_material_table_free(&table);
   refuses(ABBE_SCHEMA, "row 2 ('B') cannot be used: 'points' is not whole");
 }
 
 /* Which is what YAML and the shipped tables do with all of theirs. */
 TEST(other_tables_are_asked_in_the_same_words) {
   const char *const name = "diamond";
-  OWNED(abbe_material_table, table);
   const abbe_material *m = NULL;
-  OK(abbe_material_table_load_named(NULL, &name, 1, &table, &error));
+  MADE(abbe_material_table, table, abbe_material_table_load_named(NULL, &name, 1, &table, &error));
   OK(abbe_material_table_find(&table, "sapphire", &m, &error));
 }
 
@@ -182,10 +174,8 @@ TEST(what_is_wrong_with_a_row_is_told) {
       {"model = 'sellmeier', coefficients = zeroblob(800)", "'coefficients' has another length"},
       {"source = zeroblob(5000000)", "too big"}};
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    char sql[400];
     write_three();
-    snprintf(sql, sizeof sql, "UPDATE materials SET %s WHERE id = 2", rows[i].set);
-    run_sql(sql);
+    run_sql(printed("UPDATE materials SET %s WHERE id = 2", rows[i].set));
     abbe_material_table table;
     abbe_error error = {0};
     abbe_result result = abbe_material_table_load(path, &table, &error);
@@ -199,22 +189,20 @@ TEST(a_row_that_is_used_has_an_index) {
   write_three();
   run_sql("UPDATE materials SET coefficients = x'000000000000f0bf000000000000f0bf' WHERE id = 1");
   const char *const names[] = {"a", "c"};
-  abbe_material_table table = read_all();
+  OWNED(abbe_material_table, table) = read_all();
   assert_int_equal(table.count, 3);
   abbe_material_table_free(&table);
   REFUSED(ABBE_SCHEMA, "row 1 ('a') cannot be used: a: its cauchy formula has no real index",
           abbe_material_table_load_named(path, names, 2, &table, &error));
   OK(abbe_material_table_load_named(path, names + 1, 1, &table, &error));
-  abbe_material_table_free(&table);
 }
 
 /* The check's reading leaves such a row out, and says so. */
 TEST(a_bad_row_is_noted_and_left_out) {
   write_three();
   run_sql("UPDATE materials SET model = 'cachy' WHERE id = 2");
-  OWNED(abbe_material_table, table);
   OWNED(abbe_report, unread) = {0};
-  OK(abbe_material_table_load_lenient(path, &table, &unread, &error));
+  MADE(abbe_material_table, table, abbe_material_table_load_lenient(path, &table, &unread, &error));
   assert_int_equal(table.count, 2);
   assert_int_equal(unread.count, 1);
   assert_int_equal(unread.note[0].line, 2);
@@ -280,7 +268,7 @@ TEST(changed_bytes_are_survived) {
 /* ---- writing ---- */
 
 TEST(what_cannot_be_stored_is_refused) {
-  abbe_material_table table = table_of(A B C);
+  OWNED(abbe_material_table, table) = table_of(A B C);
   FILE *full = fopen("/dev/full", "w");
   REFUSED(ABBE_IO, "", abbe_material_store_write(&table, full, &error));
   fclose(full);
@@ -292,7 +280,6 @@ TEST(what_cannot_be_stored_is_refused) {
   REFUSED(ABBE_INVALID_ARGUMENT, "does not ascend", abbe_material_store_write(&table, to, &error));
   assert_int_equal(ftell(to), 0);
   fclose(to);
-  abbe_material_table_free(&table);
   assert_true(abbe_material_store_is_name("a/b.SQLite"));
   assert_false(abbe_material_store_is_name("a.sqlite/b"));
   assert_false(abbe_material_store_is_name("sqlite"));

@@ -19,9 +19,8 @@ static inline abbe_field field_of(size_t width, size_t height, int what) {
   static const char *const bands[] = {"S0.450nm", "S0.650nm", "stderr.S0.450nm", "stderr.S0.650nm"};
   const char *const *of = what & BANDS ? bands : names[what & XYZ];
   size_t channels = (what & BANDS ? 2 : 3) * (size_t)(what & ERRORS ? 2 : 1);
-  OWNED(abbe_image, image) = {0};
   abbe_field field = {0};
-  OK(abbe_image_make(width, height, channels, of, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(width, height, channels, of, &image, &error));
   OK(abbe_image_set_attribute(&image, "abbe:space", "acescg", &error));
   OK(abbe_field_make(&image, "it", &field, &error));
   return field;

@@ -3,9 +3,9 @@
 
 TEST(equal_fields) {
   for (int what = 0; what < 2; what++) {
-    abbe_field a = field_of(13, 7, what);
+    OWNED(abbe_field, a) = field_of(13, 7, what);
     paint(&a);
-    abbe_comparison c = compare(&a, &a, NULL);
+    OWNED(abbe_comparison, c) = compare(&a, &a, NULL);
     for (int m = 0; m <= ABBE_COMPARE_UV_MEAN; m++)
       assert_near(abbe_compare_deviation((abbe_compare_metric)m, c.whole.metric[m].value), 0, 0);
     assert_true(isnan(value(&c.whole, ABBE_COMPARE_Z_EXCESS)));
@@ -16,19 +16,17 @@ TEST(equal_fields) {
     assert_false(c.masked);
     assert_near(c.whole.uv_share, 1, 1e-12);
     abbe_comparison_free(&c);
-    abbe_comparison_free(&c);
-    abbe_field_free(&a);
   }
 }
 
 /* Two pixels, Y only of note: b = 1, 3; a = 2, 3. Mean of b 4/3 over X, Y, Z of (1, 1, 1), (1, 3,
  * 1). */
 TEST(by_hand) {
-  abbe_field b = field_of(2, 1, XYZ), a = field_of(2, 1, XYZ);
+  OWNED(abbe_field, b) = field_of(2, 1, XYZ), a = field_of(2, 1, XYZ);
   const float reference[6] = {1, 1, 1, 1, 3, 1}, other[6] = {1, 2, 1, 1, 3, 1};
   memcpy(b.colour.value, reference, sizeof reference);
   memcpy(a.colour.value, other, sizeof other);
-  abbe_comparison c = compare(&b, &a, NULL);
+  OWNED(abbe_comparison, c) = compare(&b, &a, NULL);
   assert_near(c.unit, 2, 1e-12);
   assert_near(value(&c.whole, ABBE_COMPARE_RELATIVE_RMSE), sqrt(1.0 / 6) / (8.0 / 6), 1e-12);
   /* in units of 2: a - b = 0.5, b = 0.5 */
@@ -43,13 +41,10 @@ TEST(by_hand) {
   assert_near(value(&c.whole, ABBE_COMPARE_UV_MEAN), d / 4, 1e-7);
   assert_near(c.white[1], 3, 1e-6);
   assert_true(c.white_found);
-  abbe_comparison_free(&c);
-  abbe_field_free(&a);
-  abbe_field_free(&b);
 }
 
 TEST(brighter_by_a_factor) {
-  abbe_field b = field_of(16, 16, XYZ), a = field_of(16, 16, XYZ);
+  OWNED(abbe_field, b) = field_of(16, 16, XYZ), a = field_of(16, 16, XYZ);
   paint(&b);
   double mean = 0, square = 0;
   for (size_t i = 0; i < 768; i++) {
@@ -58,7 +53,7 @@ TEST(brighter_by_a_factor) {
     mean += v / 768;
     square += v * v / 768;
   }
-  abbe_comparison c = compare(&b, &a, NULL);
+  OWNED(abbe_comparison, c) = compare(&b, &a, NULL);
   assert_near(value(&c.whole, ABBE_COMPARE_RELATIVE_RMSE), sqrt(square) / mean, 1e-9);
   assert_near(value(&c.whole, ABBE_COMPARE_ENERGY_RATIO), 2, 1e-12);
   assert_near(value(&c.whole, ABBE_COMPARE_UV_MEAN), 0, 1e-7);
@@ -69,9 +64,6 @@ TEST(brighter_by_a_factor) {
   assert_near(c.scale, 0.5, 1e-12);
   for (int m = 0; m <= ABBE_COMPARE_UV_MEAN; m++)
     assert_near(abbe_compare_deviation((abbe_compare_metric)m, c.whole.metric[m].value), 0, 1e-9);
-  abbe_comparison_free(&c);
-  abbe_field_free(&a);
-  abbe_field_free(&b);
 }
 
 /* Three pairs of [Sharma2005] as pixels, under a white that is given. */
@@ -91,20 +83,19 @@ TEST(published_colour_differences) {
       }
     }
   const abbe_compare_options options = {.white = {5 * d65[0], 5 * d65[1], 5 * d65[2]}};
-  abbe_comparison c = compare(&side[0], &side[1], &options);
+  OWNED(abbe_comparison, c) = compare(&side[0], &side[1], &options);
   assert_false(c.white_found);
   double mean = (4.3065 + 27.1492 + 0.9082) / 3;
   assert_near(value(&c.whole, ABBE_COMPARE_CIEDE2000_MEAN), mean, 2e-4);
   assert_near(value(&c.whole, ABBE_COMPARE_CIEDE2000_MAX), 27.1492, 2e-4);
   assert_near(value(&c.whole, ABBE_COMPARE_CIEDE2000_P95), 27.1492, 2e-4);
-  abbe_comparison_free(&c);
   abbe_field_free(&side[0]);
   abbe_field_free(&side[1]);
 }
 
 /* SSIM and FLIP are asked for, know only pictures, and look into a mask as anywhere. */
 TEST(structure) {
-  abbe_field b = field_of(24, 20, XYZ), a = field_of(24, 20, XYZ);
+  OWNED(abbe_field, b) = field_of(24, 20, XYZ), a = field_of(24, 20, XYZ);
   const float *plain = b.colour.value;
   for (size_t i = 0; i < 480; i++)
     for (size_t c = 0; c < 3; c++) {
@@ -115,7 +106,7 @@ TEST(structure) {
   for (size_t i = 0; i < 480; i++) in[i] = i % 24 < 2; /* further off than any filter reaches */
   const abbe_mask mask = {.count = 480, .inside = 40, .in = in};
   abbe_compare_options options = {.white = {d65[0], 1, d65[2]}, .mask = &mask};
-  abbe_comparison c = compare(&b, &a, &options);
+  OWNED(abbe_comparison, c) = compare(&b, &a, &options);
   assert_true(isnan(value(&c.whole, ABBE_COMPARE_SSIM)));
   abbe_comparison_free(&c);
   options.structure = true;
@@ -131,35 +122,29 @@ TEST(structure) {
   a.kind = b.kind = ABBE_FIELD_RECEIVER_MAP;
   c = compare(&b, &a, &options);
   assert_true(isnan(value(&c.whole, ABBE_COMPARE_FLIP_MEAN)));
-  abbe_comparison_free(&c);
-  abbe_field_free(&a);
-  abbe_field_free(&b);
 }
 
 /* Noise of a picture's own errors has an SSIM and a FLIP, and a test that has just those lies
  * within them. */
 TEST(noise_of_structure) {
-  abbe_field exact = field_of(48, 40, XYZ), noisy = field_of(48, 40, XYZ | ERRORS);
+  OWNED(abbe_field, exact) = field_of(48, 40, XYZ), noisy = field_of(48, 40, XYZ | ERRORS);
   for (size_t i = 0; i < 48 * 40; i++)
     for (size_t c = 0; c < 3; c++)
       exact.colour.value[3 * i + c] = (float)(d65[c] * (0.4 + 0.2 * sin(0.1 * (double)(i % 48))));
   make_noisy(&noisy, &exact, 0.1, 0, 7);
   const abbe_compare_options options = {.white = {d65[0], 1, d65[2]}, .structure = true};
-  abbe_comparison c = compare(&noisy, &exact, &options);
+  OWNED(abbe_comparison, c) = compare(&noisy, &exact, &options);
   for (int m = ABBE_COMPARE_SSIM; m <= ABBE_COMPARE_HDR_FLIP_MEAN; m++) {
     const abbe_compare_value *v = &c.whole.metric[m];
     const double told = abbe_compare_deviation((abbe_compare_metric)m, v->noise);
     assert_true(told > 0.01);
     assert_near(abbe_compare_deviation((abbe_compare_metric)m, v->value) / told, 1, 0.15);
   }
-  abbe_comparison_free(&c);
-  abbe_field_free(&noisy);
-  abbe_field_free(&exact);
 }
 
 /* Of 1 to 100, 95 % are at most 95: the percentile is an element, not in between. */
 TEST(percentile) {
-  abbe_field b = field_of(10, 10, XYZ), a = field_of(10, 10, XYZ);
+  OWNED(abbe_field, b) = field_of(10, 10, XYZ), a = field_of(10, 10, XYZ);
   const abbe_compare_options options = {.white = {d65[0], 1, d65[2]}};
   double expected = 0;
   for (size_t i = 0; i < 100; i++) {
@@ -174,11 +159,8 @@ TEST(percentile) {
     abbe_difference_lab(dark, options.white, lab[1]);
     if (at == 94) expected = abbe_difference_ciede2000(lab[0], lab[1]);
   }
-  abbe_comparison c = compare(&b, &a, &options);
+  OWNED(abbe_comparison, c) = compare(&b, &a, &options);
   assert_near(value(&c.whole, ABBE_COMPARE_CIEDE2000_P95), expected, 1e-4);
-  abbe_comparison_free(&c);
-  abbe_field_free(&a);
-  abbe_field_free(&b);
 }
 
 /* What is measured does not depend on the space that the file is kept in. */
@@ -198,19 +180,17 @@ TEST(any_space_gives_the_same) {
       abbe_rgb_space_apply(from, xyz, xyz);
       for (size_t c = 0; c < 3; c++) pairs[k][1]->colour.value[3 * i + c] = (float)xyz[c];
     }
-  abbe_comparison x = compare(&b, &a, NULL), y = compare(&rgb_b, &rgb_a, NULL);
+  OWNED(abbe_comparison, x) = compare(&b, &a, NULL), y = compare(&rgb_b, &rgb_a, NULL);
   for (int m = 0; m <= ABBE_COMPARE_UV_MEAN; m++)
     assert_near(y.whole.metric[m].value, x.whole.metric[m].value,
                 1e-5 * (0.01 + x.whole.metric[m].value));
-  abbe_comparison_free(&x);
-  abbe_comparison_free(&y);
   for (int k = 0; k < 4; k++) abbe_field_free(pairs[k % 2][k / 2]);
 }
 
 /* A mask measures what a field of its pixels alone does. */
 TEST(a_mask_is_a_field_of_its_pixels) {
-  abbe_field b = field_of(8, 8, XYZ | ERRORS), a = field_of(8, 8, XYZ);
-  abbe_field part_b = field_of(8, 2, XYZ | ERRORS), part_a = field_of(8, 2, XYZ);
+  OWNED(abbe_field, b) = field_of(8, 8, XYZ | ERRORS), a = field_of(8, 8, XYZ);
+  OWNED(abbe_field, part_b) = field_of(8, 2, XYZ | ERRORS), part_a = field_of(8, 2, XYZ);
   paint(&a);
   make_noisy(&b, &a, 0.1, 1, 9);
   unsigned char in[64] = {0};
@@ -223,7 +203,7 @@ TEST(a_mask_is_a_field_of_its_pixels) {
   }
   const abbe_compare_options options = {.mask = &mask, .white = {d65[0], 1, d65[2]}};
   const abbe_compare_options alone = {.white = {d65[0], 1, d65[2]}};
-  abbe_comparison c = compare(&b, &a, &options), p = compare(&part_b, &part_a, &alone);
+  OWNED(abbe_comparison, c) = compare(&b, &a, &options), p = compare(&part_b, &part_a, &alone);
   assert_true(c.masked);
   assert_int_equal(c.mask.pixels, 16);
   assert_int_equal(c.whole.pixels, 64);
@@ -234,21 +214,15 @@ TEST(a_mask_is_a_field_of_its_pixels) {
   }
   assert_near(c.mask.metric[ABBE_COMPARE_RELATIVE_RMSE].limit,
               p.whole.metric[ABBE_COMPARE_RELATIVE_RMSE].limit, 1e-12);
-  abbe_comparison_free(&c);
-  abbe_comparison_free(&p);
-  abbe_field_free(&a);
-  abbe_field_free(&b);
-  abbe_field_free(&part_a);
-  abbe_field_free(&part_b);
 }
 
 TEST(bands) {
-  abbe_field b = field_of(2, 1, BANDS | ERRORS), a = field_of(2, 1, BANDS);
+  OWNED(abbe_field, b) = field_of(2, 1, BANDS | ERRORS), a = field_of(2, 1, BANDS);
   const float reference[4] = {1, 2, 1, 4}, other[4] = {1, 2, 2, 4}, error[4] = {0.5f, 0, 0.5f, 0};
   memcpy(b.bands.value, reference, sizeof reference);
   memcpy(b.bands.error, error, sizeof error);
   memcpy(a.bands.value, other, sizeof other);
-  abbe_comparison c = compare(&b, &a, NULL);
+  OWNED(abbe_comparison, c) = compare(&b, &a, NULL);
   assert_near(c.unit, 2, 1e-12);
   assert_int_equal(c.whole.channels, 2);
   assert_string_equal(c.whole.channel[0].name, "450 nm");
@@ -264,13 +238,10 @@ TEST(bands) {
   assert_int_equal(c.whole.z.count, 2);
   assert_int_equal(c.whole.z.untested, 2);
   assert_near(c.whole.z.max, 2, 1e-6);
-  abbe_comparison_free(&c);
-  abbe_field_free(&a);
-  abbe_field_free(&b);
 }
 
 TEST(pixels_that_are_not_finite) {
-  abbe_field b = field_of(4, 1, XYZ | ERRORS), a = field_of(4, 1, XYZ);
+  OWNED(abbe_field, b) = field_of(4, 1, XYZ | ERRORS), a = field_of(4, 1, XYZ);
   paint(&a);
   make_noisy(&b, &a, 0, 0, 1);
   a.colour.value[4] = NAN;
@@ -284,8 +255,6 @@ TEST(pixels_that_are_not_finite) {
   abbe_comparison_free(&c);
   a.colour.value[0] = NAN;
   REFUSED(ABBE_INVALID_ARGUMENT, "no pixel is finite", abbe_compare(&b, &a, NULL, &c, &error));
-  abbe_field_free(&a);
-  abbe_field_free(&b);
 }
 
 static void refuse(const abbe_field *b, const abbe_field *a, const abbe_compare_options *options,
@@ -296,8 +265,9 @@ static void refuse(const abbe_field *b, const abbe_field *a, const abbe_compare_
 }
 
 TEST(what_cannot_be_compared) {
-  abbe_field lit = field_of(4, 4, XYZ), dark = field_of(4, 4, XYZ), small = field_of(4, 2, XYZ),
-             bands = field_of(4, 4, BANDS), empty = {0};
+  OWNED(abbe_field, lit) = field_of(4, 4, XYZ), dark = field_of(4, 4, XYZ),
+                    small = field_of(4, 2, XYZ), bands = field_of(4, 4, BANDS);
+  abbe_field empty = {0};
   paint(&lit);
   unsigned char in[4] = {1};
   abbe_mask mask = {.count = 4, .inside = 1, .in = in};
@@ -308,15 +278,11 @@ TEST(what_cannot_be_compared) {
   refuse(&lit, &bands, NULL, "aligned");
   refuse(&empty, &empty, NULL, "aligned");
   refuse(&lit, &lit, &masked, "mask has 4 pixels");
-  abbe_comparison c = compare(&lit, &dark, NULL); /* a black picture is a bad one, not an error */
+  OWNED(abbe_comparison, c) =
+      compare(&lit, &dark, NULL); /* a black picture is a bad one, not an error */
   assert_near(value(&c.whole, ABBE_COMPARE_ENERGY_RATIO), 0, 0);
   assert_near(c.whole.uv_share, 0, 0);
   assert_true(isnan(value(&c.whole, ABBE_COMPARE_UV_MEAN)));
-  abbe_comparison_free(&c);
-  abbe_field_free(&lit);
-  abbe_field_free(&dark);
-  abbe_field_free(&small);
-  abbe_field_free(&bands);
 }
 
 TEST(names) {

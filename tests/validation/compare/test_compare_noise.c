@@ -2,13 +2,13 @@
 #include "tests/validation/compare/fields.h"
 
 TEST(an_exact_field_lies_in_the_noise) {
-  abbe_field b = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
+  OWNED(abbe_field, b) = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
   paint(&a);
   int above[ABBE_COMPARE_METRIC_COUNT] = {0}, rounds = 20;
   double ratio[ABBE_COMPARE_METRIC_COUNT] = {0};
   for (int i = 0; i < rounds; i++) {
     make_noisy(&b, &a, 0.1, 0, 77u + (unsigned)i);
-    abbe_comparison c = compare(&b, &a, NULL);
+    OWNED(abbe_comparison, c) = compare(&b, &a, NULL);
     for (int m = 0; m < ABBE_COMPARE_METRIC_COUNT; m++) {
       const abbe_compare_value *v = &c.whole.metric[m];
       abbe_compare_verdict verdict = abbe_compare_judge((abbe_compare_metric)m, v);
@@ -23,7 +23,6 @@ TEST(an_exact_field_lies_in_the_noise) {
     assert_true(rmse->net < 0.4 * rmse->value);
     assert_near(value(&c.whole, ABBE_COMPARE_Z_MEAN_SQUARE), 1, 0.08);
     assert_near(value(&c.whole, ABBE_COMPARE_Z_OVER_2), 0.0455, 0.012);
-    abbe_comparison_free(&c);
   }
   static const abbe_compare_metric told[] = {ABBE_COMPARE_RELATIVE_RMSE,
                                              ABBE_COMPARE_SQUARED_RELATIVE,
@@ -35,14 +34,12 @@ TEST(an_exact_field_lies_in_the_noise) {
       fail_msg("%s: %d of %d above", abbe_compare_metric_name((abbe_compare_metric)m), above[m],
                rounds);
   }
-  abbe_field_free(&a);
-  abbe_field_free(&b);
 }
 
 /* Errors that only brighten and darken change no hue: the noise that is told of hues is far less
  * than that of independent errors of the same size. */
 TEST(errors_that_go_together) {
-  abbe_field b = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
+  OWNED(abbe_field, b) = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
   for (size_t i = 0; i < 3 * 48 * 48; i++)
     a.colour.value[i] = (float)(i % 3 == 2 ? 1.5 : 1) * (1 + 0.3f * (float)sin(0.01 * (double)i));
   double noise[2];
@@ -56,22 +53,19 @@ TEST(errors_that_go_together) {
         b.colour.error[3 * i + c] = (float)(0.1 * v);
       }
     }
-    abbe_comparison c = compare(&b, &a, NULL);
+    OWNED(abbe_comparison, c) = compare(&b, &a, NULL);
     noise[together] = c.whole.metric[ABBE_COMPARE_UV_MEAN].noise;
     for (int m = ABBE_COMPARE_CIEDE2000_MEAN; m <= ABBE_COMPARE_UV_MEAN; m++)
       if (m != ABBE_COMPARE_CIEDE2000_MAX)
         assert_int_equal(abbe_compare_judge((abbe_compare_metric)m, &c.whole.metric[m]),
                          ABBE_COMPARE_BELOW_REFERENCE);
-    abbe_comparison_free(&c);
   }
   assert_true(noise[1] < 0.02 * noise[0]);
-  abbe_field_free(&a);
-  abbe_field_free(&b);
 }
 
 /* A tenth off everywhere, in noise of a twentieth: told apart, and its size is found again. */
 TEST(a_true_difference_is_found) {
-  abbe_field b = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
+  OWNED(abbe_field, b) = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
   paint(&a);
   make_noisy(&b, &a, 0.05, 2, 5);
   double mean = 0, square = 0;
@@ -80,7 +74,7 @@ TEST(a_true_difference_is_found) {
     mean += v;
     square += v * v / 121;
   }
-  abbe_comparison c = compare(&b, &a, NULL);
+  OWNED(abbe_comparison, c) = compare(&b, &a, NULL);
   const abbe_compare_value *rmse = &c.whole.metric[ABBE_COMPARE_RELATIVE_RMSE];
   assert_int_equal(abbe_compare_judge(ABBE_COMPARE_RELATIVE_RMSE, rmse), ABBE_COMPARE_ABOVE);
   assert_near(rmse->net, sqrt(square * 3 * 48 * 48) / mean, 0.05 * rmse->net);
@@ -89,20 +83,17 @@ TEST(a_true_difference_is_found) {
   assert_int_equal(
       abbe_compare_judge(ABBE_COMPARE_ENERGY_RATIO, &c.whole.metric[ABBE_COMPARE_ENERGY_RATIO]),
       ABBE_COMPARE_ABOVE);
-  abbe_comparison_free(&c);
-  abbe_field_free(&a);
-  abbe_field_free(&b);
 }
 
 TEST(the_noise_of_both) {
-  abbe_field exact = field_of(48, 48, XYZ), b = field_of(48, 48, XYZ | ERRORS),
-             a = field_of(48, 48, XYZ | ERRORS);
+  OWNED(abbe_field, exact) = field_of(48, 48, XYZ), b = field_of(48, 48, XYZ | ERRORS),
+                    a = field_of(48, 48, XYZ | ERRORS);
   paint(&exact);
   make_noisy(&b, &exact, 0.05, 0, 5);
   make_noisy(&a, &exact, 0.15, 0, 6);
   b.passes = 16;
   a.passes = 100;
-  abbe_comparison c = compare(&b, &a, NULL);
+  OWNED(abbe_comparison, c) = compare(&b, &a, NULL);
   const abbe_compare_value *rmse = &c.whole.metric[ABBE_COMPARE_RELATIVE_RMSE];
   assert_int_equal(abbe_compare_judge(ABBE_COMPARE_RELATIVE_RMSE, rmse), ABBE_COMPARE_BELOW_BOTH);
   assert_near(rmse->both_noise / rmse->noise, sqrt(1 + 9), 0.1);
@@ -111,14 +102,9 @@ TEST(the_noise_of_both) {
   assert_near(value(&c.whole, ABBE_COMPARE_Z_MEAN_SQUARE), 1, 0.08);
   assert_true(c.whole.metric[ABBE_COMPARE_CIEDE2000_MEAN].both_noise >
               c.whole.metric[ABBE_COMPARE_CIEDE2000_MEAN].noise);
-  abbe_comparison again = compare(&b, &a, NULL);
+  OWNED(abbe_comparison, again) = compare(&b, &a, NULL);
   for (int m = 0; m < ABBE_COMPARE_METRIC_COUNT; m++)
     assert_memory_equal(&again.whole.metric[m], &c.whole.metric[m], sizeof c.whole.metric[m]);
-  abbe_comparison_free(&again);
-  abbe_comparison_free(&c);
-  abbe_field_free(&exact);
-  abbe_field_free(&a);
-  abbe_field_free(&b);
 }
 
 /* Errors that are themselves estimated, from 16 passes, as a tracer's are: Student's t holds. */
@@ -139,20 +125,17 @@ static void make_passes(abbe_field *reference, const abbe_field *exact, unsigned
 }
 
 TEST(errors_from_passes) {
-  abbe_field b = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
+  OWNED(abbe_field, b) = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
   paint(&a);
   int above = 0;
   for (unsigned i = 0; i < 8; i++) {
     make_passes(&b, &a, 31 + i);
-    abbe_comparison c = compare(&b, &a, NULL);
+    OWNED(abbe_comparison, c) = compare(&b, &a, NULL);
     const abbe_compare_value *rmse = &c.whole.metric[ABBE_COMPARE_RELATIVE_RMSE];
     assert_near(rmse->value / rmse->noise, 1, 0.08);
     assert_near(value(&c.whole, ABBE_COMPARE_Z_OVER_2), 0.0639, 0.015); /* t, 15 degrees */
     assert_near(value(&c.whole, ABBE_COMPARE_Z_MEAN_SQUARE), 15.0 / 13, 0.1);
     above += value(&c.whole, ABBE_COMPARE_Z_EXCESS) > 1;
-    abbe_comparison_free(&c);
   }
   assert_true(above <= 1);
-  abbe_field_free(&a);
-  abbe_field_free(&b);
 }

@@ -9,11 +9,9 @@
 
 static abbe_field field_of(size_t width, size_t height, double y) {
   static const char *const names[] = {"X", "Y", "Z"};
-  abbe_image image = {0};
   abbe_field field = {0};
-  OK(abbe_image_make(width, height, 3, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(width, height, 3, names, &image, &error));
   OK(abbe_field_make(&image, "it", &field, &error));
-  abbe_image_free(&image);
   for (size_t i = 0; i < width * height; i++) field.colour.value[3 * i + 1] = (float)y;
   return field;
 }
@@ -25,7 +23,7 @@ static double range_of(const abbe_field *b, const abbe_field *a, double scale) {
 }
 
 TEST(range) {
-  abbe_field b = field_of(10, 20, 0), a = field_of(10, 20, 0);
+  OWNED(abbe_field, b) = field_of(10, 20, 0), a = field_of(10, 20, 0);
   assert_near(range_of(&b, &a, 1), 0, 0);
   a.colour.value[1] = 3; /* one of 200: above 99 % of all, which are equal */
   assert_near(range_of(&b, &a, 1), 5, 1e-12);
@@ -35,16 +33,13 @@ TEST(range) {
   for (size_t i = 0; i < 10; i++) a.colour.value[3 * i + 1] = 1000;
   a.colour.value[4] = NAN;
   assert_near(range_of(&b, &a, 1), 1000, 1e-9);
-  abbe_field_free(&a);
-  abbe_field_free(&b);
 }
 
 /* Pixels of the colour of t in the picture at path, the scale bar's too. */
 static size_t count(const char *path, double t, size_t *width, size_t *height) {
-  OWNED(abbe_image, image) = {0};
   double rgb[3];
   size_t found = 0;
-  OK(abbe_png_read(path, &image, &error));
+  MADE(abbe_image, image, abbe_png_read(path, &image, &error));
   abbe_colour_map_at(ABBE_COLOUR_MAP_DIFFERENCE, t, rgb);
   for (size_t i = 0; i < image.width * image.height; i++) {
     double distance = 0;
@@ -63,9 +58,8 @@ static void draw(const char *path, const abbe_field *b, const abbe_field *a) {
 
 /* Each pixel is four by four of the picture, in the colour of its difference. */
 TEST(the_picture) {
-  char path[64];
-  snprintf(path, sizeof path, "/tmp/abbe_test_difference_%ld.png", (long)getpid());
-  abbe_field b = field_of(128, 64, 1), a = field_of(128, 64, 1);
+  const char *path = printed("/tmp/abbe_test_difference_%ld.png", (long)getpid());
+  OWNED(abbe_field, b) = field_of(128, 64, 1), a = field_of(128, 64, 1);
   static const double y[] = {3, -1, 1.5, NAN, 1e9};
   static const double t[] = {1, 0, 0.625, NAN, 1};
   size_t width, height, before[5];
@@ -78,12 +72,11 @@ TEST(the_picture) {
   for (int i = 0; i < 5; i++)
     assert_int_equal(count(path, t[i], &width, &height) - before[i], t[i] == 1 ? 32 : 16);
   unlink(path);
-  abbe_field_free(&a);
-  abbe_field_free(&b);
 }
 
 TEST(what_cannot_be_drawn) {
-  abbe_field b = field_of(4, 4, 1), small = field_of(4, 2, 1), empty = {0};
+  OWNED(abbe_field, b) = field_of(4, 4, 1), small = field_of(4, 2, 1);
+  abbe_field empty = {0};
   double range;
   static const double ranges[] = {0, -1, NAN, INFINITY};
   for (int i = 0; i < 4; i++)
@@ -95,6 +88,4 @@ TEST(what_cannot_be_drawn) {
           abbe_difference_picture_write("/no/such.png", &b, &b, 1, 1, NULL, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "",
           abbe_difference_picture_range(&empty, &empty, 1, &range, &error));
-  abbe_field_free(&b);
-  abbe_field_free(&small);
 }

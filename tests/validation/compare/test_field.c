@@ -41,12 +41,10 @@ static abbe_map_layout layout_of(double left, double far) {
 static abbe_field map_of(size_t width, size_t height, const abbe_map_layout *layout,
                          const char *light) {
   static const char *const names[] = {"X", "Y", "Z", "stderr.X", "stderr.Y", "stderr.Z"};
-  abbe_image image = image_of(width, height, 6, names);
+  OWNED(abbe_image, image) = image_of(width, height, 6, names);
   if (layout != NULL) OK(abbe_map_layout_write(layout, light, &image, &error));
   set(&image, "abbe:kind", "receiver map");
-  abbe_field field = field_of(&image);
-  abbe_image_free(&image);
-  return field;
+  return field_of(&image);
 }
 
 TEST(layers_by_name) {
@@ -65,9 +63,9 @@ TEST(layers_by_name) {
                                       "caustic.B",
                                       "caustic.R",
                                       "S0.tall"};
-  abbe_image image = image_of(2, 1, 15, names);
+  OWNED(abbe_image, image) = image_of(2, 1, 15, names);
   set(&image, "abbe:passes", "64");
-  abbe_field f = field_of(&image);
+  OWNED(abbe_field, f) = field_of(&image);
   assert_int_equal(f.kind, ABBE_FIELD_PICTURE);
   assert_int_equal(f.passes, 64);
   assert_true(f.space_assumed && !f.is_xyz);
@@ -83,52 +81,46 @@ TEST(layers_by_name) {
   assert_memory_equal(f.bands.error, band_errors, sizeof band_errors);
   assert_near((double)f.caustic.value[0], 14, 0);
   abbe_field_free(&f);
-  abbe_field_free(&f);
-  abbe_image_free(&image);
 }
 
 /* Bands are compared in one unit, whatever the file's is; what is not read of a spectrum counts. */
 TEST(units_of_bands) {
   static const char *const names[] = {"S0.500nm",        "S0.600nm", "stderr.S0.500nm",
                                       "stderr.S0.600nm", "S1.500nm", "w500nm"};
-  abbe_image image = image_of(1, 1, 6, names);
+  OWNED(abbe_image, image) = image_of(1, 1, 6, names);
   set(&image, "emissiveUnits", "mW.m^-2.sr^-1.nm^-1");
-  abbe_field f = field_of(&image);
+  OWNED(abbe_field, f) = field_of(&image);
   const double bands[2] = {1e-3, 2e-3}, errors[2] = {3e-3, 4e-3};
   for (int i = 0; i < 2; i++) {
     assert_near((double)f.bands.value[i], bands[i], 1e-9);
     assert_near((double)f.bands.error[i], errors[i], 1e-9);
   }
   assert_int_equal(f.unread, 2);
-  abbe_field_free(&f);
-  abbe_image_free(&image);
 }
 
 TEST(errors_that_are_not_known) {
   static const char *const names[] = {"X", "Y", "Z", "stderr.X", "stderr.Y", "stderr.Z"};
-  abbe_image image = image_of(2, 1, 6, names);
+  OWNED(abbe_image, image) = image_of(2, 1, 6, names);
   for (size_t i = 0; i < 12; i++)
     if (i % 6 >= 3) image.data[i] = INFINITY;
-  abbe_field f = field_of(&image);
+  OWNED(abbe_field, f) = field_of(&image);
   assert_null(f.colour.error);
   abbe_field_free(&f);
   image.data[11] = 1;
   f = field_of(&image);
   assert_non_null(f.colour.error);
-  abbe_field_free(&f);
-  abbe_image_free(&image);
 }
 
 TEST(spaces) {
   static const char *const names[] = {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B"};
   for (int s = 0; s < ABBE_RGB_SPACE_XYZ; s++)
     for (int by_word = 0; by_word < 2; by_word++) {
-      abbe_image image = image_of(1, 1, 6, names);
+      OWNED(abbe_image, image) = image_of(1, 1, 6, names);
       if (by_word)
         set(&image, "abbe:space", abbe_rgb_space_name((abbe_rgb_space)s));
       else
         abbe_rgb_space_chromaticities((abbe_rgb_space)s, image.xy);
-      abbe_field f = field_of(&image);
+      OWNED(abbe_field, f) = field_of(&image);
       assert_false(f.space_assumed);
       assert_string_equal(f.space, abbe_rgb_space_name((abbe_rgb_space)s));
       double m[9], xyz[3], error[3];
@@ -150,8 +142,6 @@ TEST(spaces) {
         assert_near(again[k], expected[k], 1e-6);
         assert_near(error_again[k], error[k], 1e-6);
       }
-      abbe_field_free(&f);
-      abbe_image_free(&image);
     }
 }
 
@@ -169,25 +159,24 @@ TEST(what_cannot_be_compared) {
               {errors, 4, "'stderr.Z'"},
               {twice, 2, "one wavelength"}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    abbe_image image = image_of(2, 2, rows[i].count, rows[i].names);
+    OWNED(abbe_image, image) = image_of(2, 2, rows[i].count, rows[i].names);
     abbe_field field = {0};
     REFUSED(ABBE_INVALID_ARGUMENT, rows[i].says, abbe_field_make(&image, "a.exr", &field, &error));
     assert_contains(last_error.text, "a.exr");
     assert_null(field.colour.value);
-    abbe_image_free(&image);
   }
-  abbe_image image = image_of(1, 1, 3, rgb), empty = {0};
+  OWNED(abbe_image, image) = image_of(1, 1, 3, rgb);
+  abbe_image empty = {0};
   for (int i = 0; i < 8; i++) image.xy[i] = 0.3;
   abbe_field field = {0};
   REFUSED(ABBE_INVALID_ARGUMENT, "span no colour space",
           abbe_field_make(&image, "a.exr", &field, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_field_make(&empty, "a.exr", &field, &error));
   REFUSED(ABBE_IO, "", abbe_field_load("/no/such.exr", &field, &error));
-  abbe_image_free(&image);
 }
 
 TEST(summing_down_keeps_the_flux) {
-  abbe_field f = map_of(6, 4, NULL, NULL);
+  OWNED(abbe_field, f) = map_of(6, 4, NULL, NULL);
   double before[3] = {0}, squares = 0;
   for (size_t i = 0; i < 24; i++)
     for (size_t c = 0; c < 3; c++) before[c] += (double)f.colour.value[3 * i + c];
@@ -198,7 +187,7 @@ TEST(summing_down_keeps_the_flux) {
     for (size_t x = 0; x < 3; x++) corner += f.colour.value[3 * (6 * y + x) + 1];
   assert_int_equal(abbe_field_sum_down(&f, 4, 2, NULL), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_field_sum_down(&f, 0, 2, NULL), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_field_sum_down(&f, 2, 2, NULL), ABBE_OK);
+  OK(abbe_field_sum_down(&f, 2, 2, &error));
   assert_int_equal(f.width, 2);
   assert_near((double)f.colour.value[1], (double)corner, 0);
   assert_near((double)f.colour.error[1], sqrt(squares), 1e-5);
@@ -207,20 +196,17 @@ TEST(summing_down_keeps_the_flux) {
     for (size_t i = 0; i < 4; i++) after += (double)f.colour.value[3 * i + c];
     assert_near(after, before[c], 1e-9);
   }
-  abbe_field_free(&f);
 }
 
 TEST(maps_align) {
   static const size_t sizes[][2] = {{8, 2}, {2, 8}, {4, 4}};
   for (int i = 0; i < 3; i++) {
     abbe_map_layout near = layout_of(-1, 5), far = layout_of(-1, 9);
-    abbe_field a = map_of(sizes[i][0], sizes[i][0], &near, "lamp"),
-               b = map_of(sizes[i][1], sizes[i][1], &far, NULL);
+    OWNED(abbe_field, a) = map_of(sizes[i][0], sizes[i][0], &near, "lamp"),
+                      b = map_of(sizes[i][1], sizes[i][1], &far, NULL);
     OK(abbe_field_align(&a, "a", &b, "b", &error));
     assert_int_equal(a.width, b.width);
     assert_int_equal(a.width, sizes[i][0] < sizes[i][1] ? sizes[i][0] : sizes[i][1]);
-    abbe_field_free(&a);
-    abbe_field_free(&b);
   }
 }
 
@@ -251,8 +237,8 @@ TEST(what_does_not_align) {
   refuse(&a, &b, "b.exr (-1, 7) to (2, 10)");
   a = map_of(4, 4, &layout, NULL), b = map_of(3, 4, &layout, NULL);
   refuse(&a, &b, "4 x 4");
-  abbe_image image = image_of(4, 4, 3, rgb), small = image_of(2, 2, 3, rgb);
-  abbe_image band = image_of(4, 4, 2, bands), other = image_of(4, 4, 2, others);
+  OWNED(abbe_image, image) = image_of(4, 4, 3, rgb), small = image_of(2, 2, 3, rgb);
+  OWNED(abbe_image, band) = image_of(4, 4, 2, bands), other = image_of(4, 4, 2, others);
   a = map_of(4, 4, &layout, NULL), b = field_of(&image);
   refuse(&a, &b, "a receiver map and");
   a = field_of(&image), b = field_of(&small);
@@ -263,18 +249,14 @@ TEST(what_does_not_align) {
   refuse(&a, &b, "nothing in common");
   a = map_of(4, 4, &layout, "lamp"), b = map_of(4, 4, &layout, "sun");
   refuse(&a, &b, "different lights");
-  abbe_image_free(&image);
-  abbe_image_free(&small);
-  abbe_image_free(&band);
-  abbe_image_free(&other);
 }
 
 TEST(spaces_align) {
   static const char *const rgb[] = {"R", "G", "B", "S0.500nm"};
-  abbe_image image = image_of(2, 2, 4, rgb), without = image_of(2, 2, 3, rgb);
+  OWNED(abbe_image, image) = image_of(2, 2, 4, rgb), without = image_of(2, 2, 3, rgb);
   set(&image, "abbe:space", "acescg");
   set(&without, "abbe:space", "acescg");
-  abbe_field a = field_of(&image), b = field_of(&without);
+  OWNED(abbe_field, a) = field_of(&image), b = field_of(&without);
   OK(abbe_field_align(&a, "a", &b, "b", &error));
   assert_true(!a.is_xyz && !b.is_xyz);
   assert_int_equal(a.bands.channels, 0);
@@ -286,25 +268,18 @@ TEST(spaces_align) {
   OK(abbe_field_align(&a, "a", &b, "b", &error));
   assert_true(a.is_xyz && b.is_xyz);
   for (size_t k = 0; k < 3; k++) assert_near((double)a.colour.value[9 + k], xyz[k], 1e-5);
-  abbe_field_free(&a);
-  abbe_field_free(&b);
-  abbe_image_free(&image);
-  abbe_image_free(&without);
 }
 
 TEST(from_a_file) {
   static const char *const names[] = {"X", "Y", "Z"};
-  char path[64];
-  snprintf(path, sizeof path, "/tmp/abbe_test_field_%ld.exr", (long)getpid());
-  abbe_image image = image_of(3, 2, 3, names);
+  const char *path = printed("/tmp/abbe_test_field_%ld.exr", (long)getpid());
+  OWNED(abbe_image, image) = image_of(3, 2, 3, names);
   abbe_map_layout layout = layout_of(-1, 5);
   OK(abbe_map_layout_write(&layout, NULL, &image, &error));
   OK(abbe_exr_write(path, &image, &error));
-  OWNED(abbe_field, f) = {0};
-  OK(abbe_field_load(path, &f, &error));
+  MADE(abbe_field, f, abbe_field_load(path, &f, &error));
   unlink(path);
   assert_int_equal(f.kind, ABBE_FIELD_RECEIVER_MAP);
   assert_true(f.is_xyz && f.colour.error == NULL && f.passes == 0);
   assert_memory_equal(f.colour.value, image.data, 18 * sizeof(float));
-  abbe_image_free(&image);
 }

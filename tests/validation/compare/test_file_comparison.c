@@ -10,8 +10,7 @@ static char paths[3][64];
 
 static void write_picture(const char *path, float value, bool errors) {
   static const char *const names[] = {"X", "Y", "Z", "stderr.X", "stderr.Y", "stderr.Z"};
-  OWNED(abbe_image, image) = {0};
-  OK(abbe_image_make(4, 4, errors ? 6 : 3, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(4, 4, errors ? 6 : 3, names, &image, &error));
   for (size_t i = 0; i < 16; i++)
     for (size_t k = 0; k < image.channels; k++)
       image.data[i * image.channels + k] = k < 3 ? value : 0.001f;
@@ -47,7 +46,7 @@ static void finish(void) {
 GROUP(begin, finish);
 
 TEST(tolerances) {
-  abbe_file_comparison c = compare(paths[0], paths[1]);
+  OWNED(abbe_file_comparison, c) = compare(paths[0], paths[1]);
   const abbe_compare_tolerance kept = {ABBE_COMPARE_RELATIVE_RMSE, false, 0.11};
   const abbe_compare_tolerance broken[] = {{ABBE_COMPARE_RELATIVE_RMSE, false, 0.09},
                                            {ABBE_COMPARE_ENERGY_RATIO, false, 0.01}};
@@ -60,12 +59,11 @@ TEST(tolerances) {
   OK(abbe_file_comparison_check(&c, broken, 2, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "is not known for",
           abbe_file_comparison_check(&c, &unknown, 1, &error));
-  abbe_file_comparison_free(&c);
 }
 
 TEST(notes) {
   abbe_compare_notes notes;
-  abbe_file_comparison c = compare(paths[0], paths[1]);
+  OWNED(abbe_file_comparison, c) = compare(paths[0], paths[1]);
   abbe_compare_notes_make(&c, &notes);
   assert_true(says(&notes, "the two differ by more than noise"));
   assert_false(says(&notes, "the reference has no standard errors"));
@@ -74,7 +72,6 @@ TEST(notes) {
   abbe_compare_notes_make(&c, &notes);
   assert_true(says(&notes, "the reference has no standard errors"));
   assert_true(says(&notes, "the white of CIEDE2000 is D65 at Y"));
-  abbe_file_comparison_free(&c);
 }
 
 TEST(masks) {

@@ -16,25 +16,23 @@ TEST(the_fewest_pixels_that_hold_the_share) {
   } rows[] = {{0.001, "01000"}, {0.5, "01000"},  {0.51, "01010"}, {0.9, "01010"},
               {0.95, "01011"},  {0.98, "01111"}, {1, "11111"}};
   for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
-    abbe_mask mask = brightest(light, 5, rows[r].share);
+    OWNED(abbe_mask, mask) = brightest(light, 5, rows[r].share);
     size_t inside = 0;
     for (size_t i = 0; i < 5; i++) {
       assert_int_equal(mask.in[i], rows[r].in[i] - '0');
       inside += mask.in[i];
     }
     assert_int_equal(mask.inside, inside);
-    abbe_mask_free(&mask);
   }
 }
 
 TEST(of_equals_the_first) {
   const double light[] = {1, 1, 1, 1, 0, 0};
-  abbe_mask mask = brightest(light, 6, 0.5);
+  OWNED(abbe_mask, mask) = brightest(light, 6, 0.5);
   assert_memory_equal(mask.in, "\1\1\0\0\0\0", 6);
   abbe_mask_free(&mask);
   mask = brightest(light, 6, 1);
   assert_int_equal(mask.inside, 4);
-  abbe_mask_free(&mask);
 }
 
 /* A wide field: the mask holds the share, and without its faintest pixel it would not. */
@@ -44,7 +42,7 @@ TEST(smallest_on_many_pixels) {
   assert_non_null(light);
   double total = 0;
   for (int i = 0; i < COUNT; i++) total += light[i] = exp(8 * sin(i * 0.7) * cos(i * 0.0123));
-  abbe_mask mask = brightest(light, COUNT, ABBE_MASK_CAUSTIC_SHARE);
+  OWNED(abbe_mask, mask) = brightest(light, COUNT, ABBE_MASK_CAUSTIC_SHARE);
   double held = 0, faintest = INFINITY, brightest_out = 0;
   for (int i = 0; i < COUNT; i++) {
     if (mask.in[i]) held += light[i], faintest = fmin(faintest, light[i]);
@@ -53,7 +51,6 @@ TEST(smallest_on_many_pixels) {
   assert_true(held >= 0.95 * total);
   assert_true(held - faintest < 0.95 * total);
   assert_true(brightest_out <= faintest);
-  abbe_mask_free(&mask);
 }
 
 TEST(what_is_no_light) {
@@ -93,21 +90,17 @@ TEST(drawn) {
 
 static abbe_field field_of(const char *const *names, size_t channels, const char *kind,
                            const float *values) {
-  abbe_image image = {0};
   abbe_field field = {0};
-  OK(abbe_image_make(4, 1, channels, names, &image, &error));
+  MADE(abbe_image, image, abbe_image_make(4, 1, channels, names, &image, &error));
   memcpy(image.data, values, 4 * channels * sizeof *values);
   OK(abbe_image_set_attribute(&image, "abbe:kind", kind, &error));
   OK(abbe_field_make(&image, "it.exr", &field, &error));
-  abbe_image_free(&image);
   return field;
 }
 
 static void assert_caustic(abbe_field field, const char *in) {
-  abbe_mask mask = {0};
-  OK(abbe_mask_make_caustic(&field, "it.exr", 0.95, &mask, &error));
+  MADE(abbe_mask, mask, abbe_mask_make_caustic(&field, "it.exr", 0.95, &mask, &error));
   assert_memory_equal(mask.in, in, 4);
-  abbe_mask_free(&mask);
   abbe_field_free(&field);
 }
 
@@ -123,7 +116,7 @@ TEST(caustic) {
   assert_caustic(field_of(xyz, 3, "receiver map", map), "\0\1\1\0");
   assert_caustic(field_of(bands, 2, "receiver map", band), "\0\1\1\0");
   assert_caustic(field_of(xyz, 6, "picture", picture), "\0\1\0\1");
-  abbe_field bare = field_of(xyz, 3, "picture", map);
+  OWNED(abbe_field, bare) = field_of(xyz, 3, "picture", map);
   abbe_mask mask = {0};
   REFUSED(ABBE_INVALID_ARGUMENT, "it.exr",
           abbe_mask_make_caustic(&bare, "it.exr", 0.95, &mask, &error));
@@ -132,5 +125,4 @@ TEST(caustic) {
   bare = field_of(xyz, 3, "receiver map", dark);
   REFUSED(ABBE_INVALID_ARGUMENT, "it.exr",
           abbe_mask_make_caustic(&bare, "it.exr", 0.95, &mask, &error));
-  abbe_field_free(&bare);
 }

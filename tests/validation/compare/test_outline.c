@@ -28,11 +28,9 @@ static abbe_outline outline(int which, const abbe_outline_options *options) {
 }
 
 static abbe_outline_agreement agreement(const abbe_outline_options *options) {
-  abbe_outline a = outline(0, options), b = outline(1, options);
+  OWNED(abbe_outline, a) = outline(0, options), b = outline(1, options);
   abbe_outline_agreement out;
   OK(abbe_outline_compare(&a, &b, &out, &error));
-  abbe_outline_free(&a);
-  abbe_outline_free(&b);
   return out;
 }
 
@@ -85,12 +83,11 @@ TEST(brightness_does_not_matter) {
   const abbe_outline_agreement a = agreement(&wide);
   assert_near(a.light_ratio, 64, 1e-9);
   assert_near(a.overlap, 1, 0);
-  abbe_outline o = outline(0, &wide);
+  OWNED(abbe_outline, o) = outline(0, &wide);
   double sum = 0;
   for (int i = 0; i < COUNT; i++) sum += picture[0][i][1];
   assert_near(o.light, sum, 1e-9 * sum); /* white: Y is its red, its green, its blue */
   assert_near(o.tinted, 0, 1e-12);
-  abbe_outline_free(&o);
 }
 
 TEST(the_outline_holds_its_share) {
@@ -100,12 +97,11 @@ TEST(the_outline_holds_its_share) {
   add_disk(0, 64, 64, 10, core);
   /* the core: 10 of 10 per pixel on 1 / 16 of the disk: 40 % of the light */
   const abbe_outline_options inner = {.share = 0.39, .blur = -1};
-  abbe_outline o = outline(0, &inner);
+  OWNED(abbe_outline, o) = outline(0, &inner);
   assert_true(o.mask.inside <= 318 && o.mask.inside > 290); /* 100 pi pixels */
   abbe_outline_free(&o);
   o = outline(0, &all);
   assert_near((double)o.mask.inside, 1600 * 3.14159265, 40);
-  abbe_outline_free(&o);
 }
 
 /* A band of each hue of its own, in rows from the top: their centres are known. */
@@ -115,7 +111,7 @@ TEST(hues_have_their_places) {
   clear(0);
   for (int i = 0; i < COUNT; i++)
     if (i / SIDE < 120) memcpy(picture[0][i], rgb[i / SIDE / 20], sizeof *rgb);
-  abbe_outline o = outline(0, &all);
+  OWNED(abbe_outline, o) = outline(0, &all);
   for (int h = 0; h < ABBE_OUTLINE_HUE_COUNT; h++) {
     assert_near(o.place[h].share, 1 / 6.0, 1e-12);
     assert_near(o.place[h].x, SIDE / 2.0, 1e-9);
@@ -124,7 +120,6 @@ TEST(hues_have_their_places) {
     assert_near(o.place[h].spread, sqrt((SIDE * SIDE - 1 + 399) / 12.0), 1e-6);
   }
   assert_near(o.tinted, 1 / 4.5, 1e-12); /* 1 in 4 or in 5, in equal parts over unequal sums */
-  abbe_outline_free(&o);
 }
 
 TEST(hues_at_the_sectors_borders) {
@@ -140,9 +135,8 @@ TEST(hues_at_the_sectors_borders) {
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     clear(0);
     add_disk(0, 64, 64, 9, rows[i].rgb);
-    abbe_outline o = outline(0, &all);
+    OWNED(abbe_outline, o) = outline(0, &all);
     assert_near(o.place[rows[i].hue].share, 1, 1e-12);
-    abbe_outline_free(&o);
   }
 }
 
@@ -170,7 +164,7 @@ TEST(awkward_pictures) {
   picture[0][SIDE + 9][0] = 1;
   o = outline(0, &all);
   assert_int_equal(o.mask.inside, 1);
-  abbe_outline one = outline(0, &all);
+  OWNED(abbe_outline, one) = outline(0, &all);
   abbe_outline_agreement a;
   OK(abbe_outline_compare(&o, &one, &a, &error));
   assert_near(a.mean_apart, 0, 0);
@@ -179,7 +173,6 @@ TEST(awkward_pictures) {
   REFUSED(ABBE_INVALID_ARGUMENT, "128 x 128 and 128 x 64",
           abbe_outline_compare(&o, &one, &a, &error));
   abbe_outline_free(&o);
-  abbe_outline_free(&one);
   static const abbe_outline_options wrong[] = {
       {.share = 1.01}, {.share = -1}, {.share = NAN}, {.blur = 65}, {.blur = NAN}};
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)

@@ -88,10 +88,8 @@ static double edge(size_t x, size_t y) {
 static abbe_image make(size_t width, size_t height, const truth *t, double deviation, int passes,
                        double unit) {
   abbe_image image;
-  assert_int_equal(abbe_image_make(width, height, LAYERS, layers, &image, NULL), ABBE_OK);
-  char text[16];
-  snprintf(text, sizeof text, "%d", passes);
-  assert_int_equal(abbe_image_set_attribute(&image, "abbe:passes", text, NULL), ABBE_OK);
+  OK(abbe_image_make(width, height, LAYERS, layers, &image, &error));
+  OK(abbe_image_set_attribute(&image, "abbe:passes", printed("%d", passes), &error));
   abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_ACESCG, image.xy);
   uint64_t random = 3;
   for (size_t i = 0; i < width * height; i++) {
@@ -124,10 +122,7 @@ static abbe_image make(size_t width, size_t height, const truth *t, double devia
 static abbe_image filter(const abbe_image *image, size_t threads) {
   const abbe_denoise_desc desc = {.threads = threads};
   abbe_image out;
-  abbe_error error = {0};
-  const abbe_result result = abbe_denoise_picture(image, &desc, &out, &error);
-  if (result != ABBE_OK) print_error("%s\n", error.text);
-  assert_int_equal(result, ABBE_OK);
+  OK(abbe_denoise_picture(image, &desc, &out, &error));
   return out;
 }
 
@@ -169,7 +164,7 @@ TEST(noise_goes_and_light_stays) {
   const truth of[2] = {{plain, none}, {none, plain}};
   for (size_t u = 0; u < (SANITIZED ? 1 : 3); u++)
     for (size_t s = u > 0; s < 2; s++) {
-      abbe_image image = make(90, 80, &of[s], 0.3, 8, units[u]), out = filter(&image, 2);
+      OWNED(abbe_image, image) = make(90, 80, &of[s], 0.3, 8, units[u]), out = filter(&image, 2);
       const judged raw = judge(&image, "R", "stderr.R", &of[s], units[u]);
       for (size_t k = 0; k < 3; k++) {
         const judged j = judge(&out, names[k], errors[k], &of[s], units[u]);
@@ -178,8 +173,6 @@ TEST(noise_goes_and_light_stays) {
         const judged before = judge(&image, names[k], errors[k], &of[s], units[u]);
         assert_near(j.mean / before.mean, 1, 0.01);
       }
-      abbe_image_free(&image);
-      abbe_image_free(&out);
     }
 }
 
@@ -187,7 +180,7 @@ TEST(noise_goes_and_light_stays) {
 TEST(structure_stays) {
   const truth of[] = {{lobes, none}, {none, lobes}, {none, edge}, {edge, none}, {lobes, edge}};
   for (size_t s = 0; s < sizeof of / sizeof *of; s += SANITIZED ? 2 : 1) {
-    abbe_image image = make(90, 80, &of[s], 0.1, 8, 1), out = filter(&image, 2);
+    OWNED(abbe_image, image) = make(90, 80, &of[s], 0.1, 8, 1), out = filter(&image, 2);
     for (size_t k = 0; k < 3; k++) {
       const judged raw = judge(&image, names[k], errors[k], &of[s], 1);
       const judged j = judge(&out, names[k], errors[k], &of[s], 1);
@@ -195,21 +188,17 @@ TEST(structure_stays) {
       assert_true(j.stated / j.square > 0.4 && j.stated / j.square < 8);
       assert_near(j.mean / raw.mean, 1, 2e-3);
     }
-    abbe_image_free(&image);
-    abbe_image_free(&out);
   }
 }
 
 TEST(what_has_no_noise_stays) {
   const truth of = {edge, lobes};
-  abbe_image image = make(70, 40, &of, 0, 8, 1), out = filter(&image, 2);
+  OWNED(abbe_image, image) = make(70, 40, &of, 0, 8, 1), out = filter(&image, 2);
   for (size_t i = 0; i < image.width * image.height; i++)
     for (size_t k = 0; k < 3; k++) {
       const double value = (double)*at(&image, names[k], i);
       assert_near((double)*at(&out, names[k], i), value, 3e-6 * value);
     }
-  abbe_image_free(&image);
-  abbe_image_free(&out);
 }
 
 /* Noise beside pixels without any: means of their variances are differences of sums, and what
@@ -219,23 +208,21 @@ TEST(quiet_pixels_beside_noisy_ones) {
   uint64_t random = 11;
   const truth t = {plain, none};
   for (int i = 0; i < PICTURES; i++) {
-    abbe_image image = make(SIDE, SIDE, &t, 0, 4, 1);
+    OWNED(abbe_image, image) = make(SIDE, SIDE, &t, 0, 4, 1);
     const double scale = pow(10, random_between(&random, -3, -0.5));
     for (size_t k = 0; k < (size_t)SIDE * SIDE; k++)
       for (size_t c = 0; c < 3 && k % SIDE < NOISY && k / SIDE < NOISY; c++)
         image.data[k * LAYERS + EYE_ERRORS + c] =
             (float)(scale * pow(10, random_between(&random, -7, 0)));
-    abbe_image out = filter(&image, 1);
+    OWNED(abbe_image, out) = filter(&image, 1);
     for (size_t k = 0; k < SIDE * SIDE * out.channels; k++)
       if (!isfinite(out.data[k])) fail_msg("picture %d has a sample that is not finite", i);
-    abbe_image_free(&out);
-    abbe_image_free(&image);
   }
 }
 
 TEST(raw_layers_are_kept) {
   const truth of = {edge, lobes};
-  abbe_image image = make(20, 10, &of, 0.1, 4, 1), out = filter(&image, 2);
+  OWNED(abbe_image, image) = make(20, 10, &of, 0.1, 4, 1), out = filter(&image, 2);
   static const char *const pairs[][2] = {{"R", "raw.R"},
                                          {"stderr.G", "stderr.raw.G"},
                                          {"caustic.B", "raw.caustic.B"},
@@ -247,20 +234,15 @@ TEST(raw_layers_are_kept) {
   assert_string_equal(abbe_image_attribute_text(&out, "abbe:passes"), "4");
   assert_string_equal(abbe_image_attribute_text(&out, "abbe:filter"), "non-local means");
   assert_memory_equal(out.xy, image.xy, sizeof out.xy);
-  abbe_image_free(&image);
-  abbe_image_free(&out);
 }
 
 TEST(threads_do_not_matter) {
   const truth of = {edge, lobes};
-  abbe_image image = make(70, 50, &of, 0.1, 4, 1), one = filter(&image, 1);
+  OWNED(abbe_image, image) = make(70, 50, &of, 0.1, 4, 1), one = filter(&image, 1);
   for (size_t threads = 2; threads < 5; threads++) {
-    abbe_image many = filter(&image, threads);
+    OWNED(abbe_image, many) = filter(&image, threads);
     check_same_image(&one, &many);
-    abbe_image_free(&many);
   }
-  abbe_image_free(&one);
-  abbe_image_free(&image);
 }
 
 /* Small, black, and with what is no number in it: always a picture, and finite. */
@@ -270,7 +252,7 @@ TEST(awkward_pictures) {
   for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++)
     for (size_t t = 0; t < 2; t++)
       for (int broken = 0; broken < 2; broken++) {
-        abbe_image image = make(sizes[s][0], sizes[s][1], &of[t], 0.1, 2, 1);
+        OWNED(abbe_image, image) = make(sizes[s][0], sizes[s][1], &of[t], 0.1, 2, 1);
         if (broken) {
           image.data[PHOTONS] = NAN;
           image.data[EYE + 1] = INFINITY;
@@ -278,21 +260,20 @@ TEST(awkward_pictures) {
           image.data[PHOTON_ERRORS] = INFINITY;
           image.data[NORMAL] = NAN;
         }
-        abbe_image out = filter(&image, 2);
+        OWNED(abbe_image, out) = filter(&image, 2);
         for (size_t i = 0; i < image.width * image.height; i++)
           for (size_t k = 0; k < 3; k++) {
             assert_true(isfinite(*at(&out, names[k], i)));
             assert_true(isfinite(*at(&out, errors[k], i)));
             if (t == 1 && !broken) assert_true(*at(&out, names[k], i) == 0);
           }
-        abbe_image_free(&image);
-        abbe_image_free(&out);
       }
 }
 
 TEST(a_missing_layer_is_named) {
   const truth of = {edge, lobes};
-  abbe_image image = make(4, 4, &of, 0.1, 4, 1), out;
+  OWNED(abbe_image, image) = make(4, 4, &of, 0.1, 4, 1);
+  abbe_image out;
   for (size_t c = 0; c < LAYERS; c++) {
     const char kept = image.channel[c][0];
     image.channel[c][0] = '?';
@@ -304,7 +285,6 @@ TEST(a_missing_layer_is_named) {
   }
   REFUSED(ABBE_INVALID_ARGUMENT, "100000",
           abbe_denoise_picture(&image, &(abbe_denoise_desc){.threads = 100000}, &out, &error));
-  abbe_image_free(&image);
 }
 
 /* ---- of the tracer's own pictures ---- */
@@ -313,19 +293,12 @@ TEST(a_missing_layer_is_named) {
 
 static abbe_image trace(const abbe_scene *scene, abbe_rgb_space space, uint32_t seed,
                         size_t passes) {
-  const abbe_trace_desc desc = {.no_map = true,
-                                .guides = true,
-                                .width = 40,
-                                .height = 30,
-                                .space = space,
-                                .bands = 2,
-                                .photons = 20000,
-                                .seed = seed};
-  abbe_tracer *tracer = make_tracer(scene, &desc);
+  const abbe_trace_desc desc = FIELDS(.no_map = true, .guides = true, .width = 40, .height = 30,
+                                      .space = space, .bands = 2, .photons = 20000, .seed = seed);
+  HELD(abbe_tracer, tracer) = make_tracer(scene, &desc);
   run_passes(tracer, passes);
   abbe_image image;
   OK(abbe_tracer_picture(tracer, &image, &error));
-  abbe_tracer_free(tracer);
   return image;
 }
 
@@ -339,31 +312,26 @@ static double distance(const abbe_image *a, const abbe_image *b, const char *nam
 /* A few passes, filtered, against many of another seed: nearer than they were, and the bands and
  * the light as a whole are as traced. In R, G, B and in X, Y, Z. */
 TEST(a_traced_picture_comes_nearer) {
-  OWNED(abbe_scene, scene);
-  load_text(SCENE, &scene);
+  OWNED(abbe_scene, scene) = scene_of(SCENE);
   static const abbe_rgb_space spaces[2] = {ABBE_RGB_SPACE_ACESCG, ABBE_RGB_SPACE_XYZ};
   static const char *const of[2][3] = {{"R", "G", "B"}, {"X", "Y", "Z"}};
   for (size_t s = 0; s < 2; s++) {
-    abbe_image much = trace(&scene, spaces[s], 1, 24), few = trace(&scene, spaces[s], 2, 4);
-    abbe_image out = filter(&few, 0);
+    OWNED(abbe_image, much) = trace(&scene, spaces[s], 1, 24), few = trace(&scene, spaces[s], 2, 4);
+    OWNED(abbe_image, out) = filter(&few, 0);
     for (size_t k = 0; k < 3; k++) {
       assert_true(distance(&out, &much, of[s][k]) < 0.9 * distance(&few, &much, of[s][k]));
       assert_near(channel_sum(&out, of[s][k]) / channel_sum(&few, of[s][k]), 1, 3e-3);
     }
     assert_true(channel_sum(&out, "S0.480,000000nm") == channel_sum(&few, "S0.480,000000nm"));
     assert_true(abbe_image_find_channel(&out, "photons.R") == (size_t)-1);
-    abbe_image_free(&much);
-    abbe_image_free(&few);
-    abbe_image_free(&out);
   }
 }
 
 /* One pass tells no errors, so there is nothing to go by. */
 TEST(one_pass_is_refused) {
-  OWNED(abbe_scene, scene);
-  load_text(SCENE, &scene);
-  abbe_image one = trace(&scene, ABBE_RGB_SPACE_ACESCG, 1, 1), out;
+  OWNED(abbe_scene, scene) = scene_of(SCENE);
+  OWNED(abbe_image, one) = trace(&scene, ABBE_RGB_SPACE_ACESCG, 1, 1);
+  abbe_image out;
   REFUSED(ABBE_INVALID_ARGUMENT, "two passes",
           abbe_denoise_picture(&one, &(abbe_denoise_desc){0}, &out, &error));
-  abbe_image_free(&one);
 }

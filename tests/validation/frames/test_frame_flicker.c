@@ -27,7 +27,7 @@ static abbe_frame_error add(abbe_frame_flicker *f, abbe_image frame, abbe_image 
 }
 
 TEST(errors_that_stay_do_not_flicker) {
-  abbe_frame_flicker f = {0};
+  OWNED(abbe_frame_flicker, f) = {0};
   abbe_frame_error e = add(&f, make(false, 3, 2), make(false, 2, 2));
   assert_near(e.error, sqrt(0.5 * 1 / 4), 1e-7);
   assert_true(isnan(e.change));
@@ -45,37 +45,32 @@ TEST(errors_that_stay_do_not_flicker) {
   assert_near(most.ghost, 0.25, 0);
   abbe_frame_flicker_largest(row, 1, &most);
   assert_true(isnan(most.change));
-  abbe_frame_flicker_free(&f);
 }
 
 TEST(light_in_the_dark_is_a_ghost) {
-  abbe_frame_flicker f = {.caustic = true};
+  OWNED(abbe_frame_flicker, f) = {.caustic = true};
   abbe_frame_error e = add(&f, make(true, 0.5f, 2), make(true, 0, 2));
   assert_near(e.ghost, 0.25, 1e-7);
   assert_near(e.error, sqrt(0.25 / 4), 1e-7); /* of the caustic alone */
   e = add(&f, make(true, 0, 1), make(true, 0, 2));
   assert_near(e.ghost, 0, 0);
-  abbe_frame_flicker_free(&f);
 }
 
 TEST(without_references) {
-  abbe_frame_flicker f = {0};
+  OWNED(abbe_frame_flicker, f) = {0};
   abbe_frame_error e = add(&f, make(false, 1, 1), (abbe_image){0});
   assert_true(isnan(e.error) && isnan(e.ghost) && isnan(e.change));
   e = add(&f, make(false, 2, 2), (abbe_image){0});
   assert_near(e.change, 0.5, 1e-7);
-  abbe_frame_flicker_free(&f);
 }
 
 TEST(what_does_not_fit_is_refused) {
   static const char *const y[] = {"Y"};
   abbe_frame_flicker f = {0};
   abbe_frame_error out;
-  OWNED(abbe_image, small);
-  OWNED(abbe_image, grey);
   add(&f, make(false, 1, 1), (abbe_image){0});
-  OK(abbe_image_make(2, 2, 1, y, &small, &error));
-  OK(abbe_image_make(SIDE, SIDE, 1, y, &grey, &error));
+  MADE(abbe_image, small, abbe_image_make(2, 2, 1, y, &small, &error));
+  MADE(abbe_image, grey, abbe_image_make(SIDE, SIDE, 1, y, &grey, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "frame 2 has 2 x 2",
           abbe_frame_flicker_add(&f, &small, NULL, &out, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "has no channels R, G, B",

@@ -40,10 +40,9 @@ static inline judged judged_make(const char *text, const abbe_material *material
 /* Of one index, at one wavelength. */
 static inline judged judged_plain(const char *text, double n) {
   static char name[] = "plain";
-  const abbe_material m = {.name = name,
-                           .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {n}},
-                           .min_nm = 300,
-                           .max_nm = 800};
+  const abbe_material m =
+      FIELDS(.name = name, .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {n}},
+             .min_nm = 300, .max_nm = 800);
   return judged_make(text, &m, 1);
 }
 

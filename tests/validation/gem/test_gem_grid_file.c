@@ -23,19 +23,18 @@ static void write_parts(const judged *j, const abbe_material *m) {
     abbe_gem_optimum_desc desc = small_search();
     desc.part = k;
     desc.parts = PARTS;
-    abbe_gem_optimum part = search(j, m, &desc, true);
+    OWNED(abbe_gem_optimum, part) = search(j, m, &desc, true);
     assert_int_equal(abbe_gem_optimum_missing(&part, NULL), 8);
     OK(abbe_gem_grid_file_write(path[k], &part, &error));
-    abbe_gem_optimum_free(&part);
   }
 }
 
 TEST(parts_are_the_whole) {
   const abbe_material quartz = glass(1.54);
-  judged j = judged_make(design_a, &quartz, 1);
+  OWNED(judged, j) = judged_make(design_a, &quartz, 1);
   const abbe_gem_optimum_desc desc = small_search();
-  abbe_gem_optimum whole = search(&j, &quartz, &desc, true);
-  abbe_gem_optimum merged = search(&j, &quartz, &desc, false);
+  OWNED(abbe_gem_optimum, whole) = search(&j, &quartz, &desc, true);
+  OWNED(abbe_gem_optimum, merged) = search(&j, &quartz, &desc, false);
   size_t first = 0;
   write_parts(&j, &quartz);
   assert_int_equal(abbe_gem_optimum_missing(&whole, NULL), 0);
@@ -49,14 +48,11 @@ TEST(parts_are_the_whole) {
   assert_int_equal(abbe_gem_optimum_missing(&merged, NULL), 0);
   assert_memory_equal(merged.value, whole.value, 12 * sizeof *whole.value);
   assert_int_equal(merged.best, whole.best);
-  abbe_gem_optimum_free(&merged);
-  abbe_gem_optimum_free(&whole);
-  judged_free(&j);
 }
 
 static void refuse(const judged *j, const abbe_material *m, const abbe_gem_optimum_desc *desc,
                    const char *text, abbe_result code, const char *says) {
-  abbe_gem_optimum o = search(j, m, desc, false);
+  OWNED(abbe_gem_optimum, o) = search(j, m, desc, false);
   abbe_error why = {0};
   const char *from = path[0];
   if (text != NULL) {
@@ -65,12 +61,11 @@ static void refuse(const judged *j, const abbe_material *m, const abbe_gem_optim
   }
   assert_int_equal(abbe_gem_grid_file_read(from, &o, &why), code);
   if (strstr(why.text, says) == NULL) fail_msg("'%s' does not say '%s'", why.text, says);
-  abbe_gem_optimum_free(&o);
 }
 
 TEST(what_is_of_another_search_or_broken) {
   const abbe_material quartz = glass(1.54), heavy = glass(1.9);
-  judged j = judged_make(design_a, &quartz, 1);
+  OWNED(judged, j) = judged_make(design_a, &quartz, 1);
   write_parts(&j, &quartz);
   abbe_gem_optimum_desc desc = small_search();
   refuse(&j, &heavy, &desc, NULL, ABBE_INVALID_ARGUMENT, "another search");
@@ -80,7 +75,8 @@ TEST(what_is_of_another_search_or_broken) {
   desc.measure = ABBE_GEM_COS;
   refuse(&j, &quartz, &desc, NULL, ABBE_INVALID_ARGUMENT, "another search");
   desc = small_search();
-  char *data, bad[4096];
+  FREED char *data = NULL;
+  char bad[4096];
   size_t size;
   OK(abbe_file_read(path[0], sizeof bad / 2, &data, &size, &error));
   snprintf(bad, sizeof bad, "%s99,0,0,0,0\n", data);
@@ -89,8 +85,6 @@ TEST(what_is_of_another_search_or_broken) {
   refuse(&j, &quartz, &desc, bad, ABBE_PARSE, "line 7: column 4");
   refuse(&j, &quartz, &desc, "", ABBE_PARSE, "no table");
   refuse(&j, &quartz, &desc, "a,b\n1,2\n", ABBE_PARSE, "begins with");
-  free(data);
   for (size_t k = 0; k < PARTS; k++) assert_int_equal(unlink(path[k]), 0);
   assert_int_equal(unlink("grid_file_bad.csv"), 0);
-  judged_free(&j);
 }

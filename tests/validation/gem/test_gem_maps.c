@@ -6,8 +6,7 @@ static const abbe_gem_view_desc small = {.head_rad = 15 * DEG, .side = 24, .repe
 
 /* Of the middle pixel, which the stone fills. */
 static void middle(const abbe_gem_view *view, abbe_gem_map map, float rgb[3]) {
-  OWNED(abbe_image, image);
-  OK(abbe_gem_map_paint(view, map, &image, &error));
+  MADE(abbe_image, image, abbe_gem_map_paint(view, map, &image, &error));
   for (size_t c = 0; c < 3; c++) {
     rgb[c] = image.data[3 * (view->side * view->side / 2 + view->side / 2) + c];
     assert_near(image.data[c], 1, 0); /* white where no stone is */
@@ -19,8 +18,8 @@ TEST(colours_are_those_of_the_scopes) {
   char text[256];
   float rgb[3];
   roof_text(45, text);
-  judged j = judged_plain(text, 1.6);
-  abbe_gem_view v = judged_view(&j, &small);
+  OWNED(judged, j) = judged_plain(text, 1.6);
+  OWNED(abbe_gem_view, v) = judged_view(&j, &small);
   middle(&v, ABBE_GEM_MAP_ASET, rgb);
   assert_true(rgb[2] > 2 * rgb[0] && rgb[2] > 2 * rgb[1]);
   middle(&v, ABBE_GEM_MAP_IDEAL, rgb);
@@ -40,16 +39,13 @@ TEST(colours_are_those_of_the_scopes) {
   assert_near(rgb[1], 0.9654, 1e-3);
   middle(&v, ABBE_GEM_MAP_ASET, rgb);
   assert_true(rgb[0] < 0.1f);
-  abbe_gem_view_free(&v);
-  judged_free(&j);
 }
 
 /* The means of its channels over the silhouette are the measures. */
 TEST(channels_have_the_measures) {
-  judged j = judged_plain(design_b, 2.417);
-  abbe_gem_view v = judged_view(&j, &small);
-  OWNED(abbe_image, image);
-  OK(abbe_gem_map_image(&v, &image, &error));
+  OWNED(judged, j) = judged_plain(design_b, 2.417);
+  OWNED(abbe_gem_view, v) = judged_view(&j, &small);
+  MADE(abbe_image, image, abbe_gem_map_image(&v, &image, &error));
   const size_t cover = abbe_image_find_channel(&image, "cover");
   const size_t y = abbe_image_find_channel(&image, "Y");
   assert_true(cover < image.channels && y < image.channels);
@@ -65,6 +61,4 @@ TEST(channels_have_the_measures) {
     }
     assert_near(sum / met, abbe_gem_view_amount(&v, (abbe_gem_amount)a).value, 1e-5);
   }
-  abbe_gem_view_free(&v);
-  judged_free(&j);
 }

@@ -20,7 +20,7 @@ static abbe_gem_optimum_desc describe(void) {
  * And what it says of a pair is what a view of that cut says. */
 TEST(it_leaves_the_window_behind) {
   const abbe_material quartz = glass(1.54);
-  judged j = judged_make(design_a, &quartz, 1);
+  OWNED(judged, j) = judged_make(design_a, &quartz, 1);
   abbe_gem_optimum_desc desc = describe();
   abbe_gem_optimum o;
   OK(abbe_gem_optimum_find(&j.cut, &j.polyhedron, &quartz, &j.wavelengths, &j.weights, &desc, &o,
@@ -31,10 +31,9 @@ TEST(it_leaves_the_window_behind) {
   for (size_t i = 0; i < 3; i++) assert_true(o.value[i].value < o.value[o.best].value - 0.1);
   abbe_cut cut = design_parse(design_a);
   OK(abbe_gem_optimum_apply(&o, &cut, &j.polyhedron, o.best, &error));
-  abbe_cut_polyhedron p;
   abbe_gem_stone stone;
   abbe_gem_view view;
-  OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
+  MADE(abbe_cut_polyhedron, p, abbe_cut_polyhedron_make(&cut, 0, &p, &error));
   OK(abbe_gem_stone_make(&cut, &p, &quartz, &j.wavelengths, 0.0065, &stone, &error));
   OK(abbe_gem_view_make(&stone, &j.weights, &desc.view, &view, &error));
   assert_near(abbe_gem_view_amount(&view, ABBE_GEM_ISO).value, o.value[o.best].value, 1e-12);
@@ -42,23 +41,20 @@ TEST(it_leaves_the_window_behind) {
   assert_near(cut.tier[crown].angle_deg * DEG, o.crown_rad[o.best % 3], 1e-9);
   abbe_gem_view_free(&view);
   abbe_gem_stone_free(&stone);
-  abbe_cut_polyhedron_free(&p);
   abbe_cut_free(&cut);
   abbe_gem_optimum_free(&o);
   /* the least leakage is where the brightness is greatest */
   desc.measure = ABBE_GEM_DOWN;
   desc.least = true;
-  abbe_gem_optimum leak;
-  OK(abbe_gem_optimum_find(&j.cut, &j.polyhedron, &quartz, &j.wavelengths, &j.weights, &desc, &leak,
-                           &error));
+  MADE(abbe_gem_optimum, leak,
+       abbe_gem_optimum_find(&j.cut, &j.polyhedron, &quartz, &j.wavelengths, &j.weights, &desc,
+                             &leak, &error));
   assert_true(leak.pavilion_rad[leak.best / 3] > 40.5 * DEG);
-  abbe_gem_optimum_free(&leak);
-  judged_free(&j);
 }
 
 TEST(wrong_requests_are_refused) {
   const abbe_material quartz = glass(1.54);
-  judged j = judged_make(design_a, &quartz, 1);
+  OWNED(judged, j) = judged_make(design_a, &quartz, 1);
   for (int i = 0; i < 5; i++) {
     abbe_gem_optimum_desc desc = describe();
     if (i == 0) desc.crowns = 0;
@@ -79,7 +75,6 @@ TEST(wrong_requests_are_refused) {
   REFUSED(ABBE_GEOMETRY, "",
           abbe_gem_optimum_find(&j.cut, &j.polyhedron, &quartz, &j.wavelengths, &j.weights, &desc,
                                 &o, &error));
-  judged_free(&j);
 }
 
 /* Whatever the order in which pairs become known. */

@@ -40,17 +40,14 @@ TEST(curves_agree_with_views) {
   assert_near(t.tilt_rad[0], -30 * DEG, 1e-12);
   assert_near(t.tilt_rad[2], 0, 1e-12);
   for (size_t i = 0; i < 5; i += 2) {
-    const abbe_gem_view_desc desc = {.axis_rad = 45 * DEG,
-                                     .tilt_rad = t.tilt_rad[i],
-                                     .head_rad = 15 * DEG,
-                                     .side = SANITIZED ? 32 : 96,
-                                     .repeats = 4};
-    abbe_gem_view v = judged_view(&j, &desc);
+    const abbe_gem_view_desc desc =
+        FIELDS(.axis_rad = 45 * DEG, .tilt_rad = t.tilt_rad[i], .head_rad = 15 * DEG,
+               .side = SANITIZED ? 32 : 96, .repeats = 4);
+    OWNED(abbe_gem_view, v) = judged_view(&j, &desc);
     assert_true(apart(abbe_gem_view_amount(&v, ABBE_GEM_ISO), t.curve[ABBE_GEM_TILT_ISO][5 + i]) <
                 5);
     assert_true(apart(abbe_gem_view_amount(&v, ABBE_GEM_DOWN), t.curve[ABBE_GEM_TILT_DOWN][5 + i]) <
                 5);
-    abbe_gem_view_free(&v);
   }
   for (size_t i = 0; i < 20; i++) {
     assert_true(t.curve[ABBE_GEM_TILT_COS][i].value <= t.curve[ABBE_GEM_TILT_ISO][i].value);
@@ -85,15 +82,13 @@ TEST(fire_comes_with_dispersion) {
   double fire[3];
   for (int i = 0; i < 3; i++) {
     const abbe_material m = coloured(dispersion[i]);
-    judged j = judged_make(design_b, &m, 9);
+    OWNED(judged, j) = judged_make(design_b, &m, 9);
     abbe_gem_tilts_desc desc = few;
     desc.steps = 1;
-    abbe_gem_tilts t = tilts_of(&j, &desc);
+    OWNED(abbe_gem_tilts, t) = tilts_of(&j, &desc);
     fire[i] = t.mean[ABBE_GEM_TILT_FIRE].value;
     assert_true(t.blinks.value > 0 && t.blinks.value < 1);
     assert_true(t.blinks.error > 0 && t.mean[ABBE_GEM_TILT_ISO].error > 0);
-    abbe_gem_tilts_free(&t);
-    judged_free(&j);
   }
   assert_near(fire[0], 0, 0);
   assert_true(fire[1] > 0.005 && fire[2] > 1.5 * fire[1]);
@@ -104,16 +99,14 @@ TEST(fire_comes_with_dispersion) {
 TEST(nothing_blinks_in_a_stone_that_shows_the_head) {
   char text[256];
   roof_text(45, text);
-  judged j = judged_plain(text, 1.6);
+  OWNED(judged, j) = judged_plain(text, 1.6);
   abbe_gem_tilts_desc desc = few;
   desc.most_rad = 1e-9;
   desc.steps = 1;
-  abbe_gem_tilts t = tilts_of(&j, &desc);
+  OWNED(abbe_gem_tilts, t) = tilts_of(&j, &desc);
   assert_near(t.blinks.value, 0, 0);
   assert_near(t.mean[ABBE_GEM_TILT_RETURN].value, 0, 1e-6);
   assert_near(t.spread.value, 0, 1e-6);
-  abbe_gem_tilts_free(&t);
-  judged_free(&j);
 }
 
 TEST(lamps_cover_what_their_sizes_say) {
@@ -144,15 +137,13 @@ TEST(threads_change_nothing) {
   desc.side = 8;
   desc.repeats = 2;
   desc.threads = 1;
-  abbe_gem_tilts one = tilts_of(&j, &desc);
+  OWNED(abbe_gem_tilts, one) = tilts_of(&j, &desc);
   desc.threads = 5;
-  abbe_gem_tilts five = tilts_of(&j, &desc);
+  OWNED(abbe_gem_tilts, five) = tilts_of(&j, &desc);
   assert_memory_equal(one.mean, five.mean, sizeof one.mean);
   assert_memory_equal(&one.blinks, &five.blinks, sizeof one.blinks);
   for (int c = 0; c < ABBE_GEM_TILT_CURVE_COUNT; c++)
     assert_memory_equal(one.curve[c], five.curve[c], 20 * sizeof *one.curve[c]);
-  abbe_gem_tilts_free(&one);
-  abbe_gem_tilts_free(&five);
 }
 
 static bool give_up(void *user, double done) {

@@ -13,31 +13,27 @@ static double mean(const abbe_gem_view *view, abbe_gem_amount amount) {
 TEST(slab_returns_what_its_faces_reflect) {
   static const double index[] = {1.5, 2.417};
   for (int i = 0; i < 2; i++) {
-    judged j = judged_plain(slab, index[i]);
-    abbe_gem_view view = judged_view(&j, &small);
+    OWNED(judged, j) = judged_plain(slab, index[i]);
+    OWNED(abbe_gem_view, view) = judged_view(&j, &small);
     const double n = index[i], r = pow((n - 1) / (n + 1), 2), back = 2 * r / (1 + r);
     assert_near(mean(&view, ABBE_GEM_ISO), back, 1e-4);
     assert_near(mean(&view, ABBE_GEM_COS), back, 1e-4);
     assert_near(mean(&view, ABBE_GEM_DOWN), 1 - back, 1e-4);
     assert_near(mean(&view, ABBE_GEM_BLUE), back, 1e-4);
     assert_near(mean(&view, ABBE_GEM_RETURN), 0, 1e-6);
-    abbe_gem_view_free(&view);
-    judged_free(&j);
   }
-  judged j = judged_plain(slab, 2.42);
-  abbe_gem_view view = judged_view(&j, &small);
+  OWNED(judged, j) = judged_plain(slab, 2.42);
+  OWNED(abbe_gem_view, view) = judged_view(&j, &small);
   assert_near(mean(&view, ABBE_GEM_ISO), 0.294, 5e-4);
-  abbe_gem_view_free(&view);
-  judged_free(&j);
 }
 
 TEST(slab_absorbs_by_its_thickness) {
   static char name[] = "grey";
   const double nm[1] = {500}, per_m[1] = {60};
-  abbe_material m = {.name = name,
-                     .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}},
-                     .min_nm = 300,
-                     .max_nm = 800};
+  abbe_material m =
+      FIELDS(.name = name,
+             .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}},
+             .min_nm = 300, .max_nm = 800);
   OK(abbe_spectrum_make(nm, per_m, 1, ABBE_INTERPOLATION_LINEAR, &m.attenuation, &error));
   judged j = judged_make(slab, &m, 3);
   abbe_gem_view view = judged_view(&j, &small);
@@ -60,23 +56,19 @@ TEST(roof_of_a_right_angle_is_all_blue) {
   char text[256];
   roof_text(45, text);
   for (int i = 0; i < 3; i++) {
-    judged j = judged_plain(text, index[i]);
-    abbe_gem_view view = judged_view(&j, &small);
+    OWNED(judged, j) = judged_plain(text, index[i]);
+    OWNED(abbe_gem_view, view) = judged_view(&j, &small);
     assert_near(mean(&view, ABBE_GEM_BLUE), 1, 2e-4);
     assert_near(mean(&view, ABBE_GEM_COS), 1, 2e-4);
-    abbe_gem_view_free(&view);
-    judged_free(&j);
   }
-  judged j = judged_plain(text, 1.40);
-  abbe_gem_view view = judged_view(&j, &small);
+  OWNED(judged, j) = judged_plain(text, 1.40);
+  OWNED(abbe_gem_view, view) = judged_view(&j, &small);
   assert_true(mean(&view, ABBE_GEM_DOWN) > 0.3);
-  abbe_gem_view_free(&view);
-  judged_free(&j);
 }
 
 /* Off the axis' plane the first reflection of the table is no other: of the strongest exit. */
 static double strongest_elevation(const char *text, double n, double x, double y) {
-  judged j = judged_plain(text, n);
+  OWNED(judged, j) = judged_plain(text, n);
   static abbe_gem_path path;
   const double o[3] = {x, y, 3}, d[3] = {0, 0, -1};
   double p[3], normal[3], elevation = 0;
@@ -90,7 +82,6 @@ static double strongest_elevation(const char *text, double n, double x, double y
       elevation = asin((double)path.exit[i].d[2]) / DEG;
     }
   assert_true(most > 0.5f);
-  judged_free(&j);
   return elevation;
 }
 
@@ -122,12 +113,12 @@ TEST(table_turns_from_green_to_red_where_it_must) {
 }
 
 TEST(light_everywhere_makes_every_pixel_white) {
-  judged j = judged_plain(design_b, 2.417);
+  OWNED(judged, j) = judged_plain(design_b, 2.417);
   abbe_gem_view_desc desc = small;
   for (int tilt = -30; tilt <= 30; tilt += 15) {
     desc.tilt_rad = tilt * DEG;
     desc.axis_rad = 45 * DEG;
-    abbe_gem_view v = judged_view(&j, &desc);
+    OWNED(abbe_gem_view, v) = judged_view(&j, &desc);
     for (size_t i = 0; i < v.side * v.side * v.repeats; i++) {
       const float *a = v.amount + i * ABBE_GEM_AMOUNT_COUNT;
       if (v.hit[i] == 0) continue;
@@ -139,14 +130,12 @@ TEST(light_everywhere_makes_every_pixel_white) {
       assert_true(a[ABBE_GEM_COS] <= a[ABBE_GEM_ISO] + 1e-6f);
       assert_true(lost <= (double)ABBE_GEM_LEAST_SHARE);
     }
-    abbe_gem_view_free(&v);
   }
-  judged_free(&j);
 }
 
 TEST(shares_of_area_add_up) {
-  judged j = judged_plain(design_b, 1.38);
-  abbe_gem_view v = judged_view(&j, &small);
+  OWNED(judged, j) = judged_plain(design_b, 1.38);
+  OWNED(abbe_gem_view, v) = judged_view(&j, &small);
   abbe_gem_areas areas;
   OK(abbe_gem_view_areas(&v, &areas, &error));
   assert_near(areas.brilliant.value + areas.window.value + areas.extinct.value, 1, 1e-12);
@@ -160,8 +149,6 @@ TEST(shares_of_area_add_up) {
   v = judged_view(&j, &small);
   OK(abbe_gem_view_areas(&v, &areas, &error));
   assert_near(areas.extinct.value, 1, 1e-12); /* all from the head */
-  abbe_gem_view_free(&v);
-  judged_free(&j);
 }
 
 static double apart(abbe_gem_number a, abbe_gem_number b) {
@@ -170,7 +157,7 @@ static double apart(abbe_gem_number a, abbe_gem_number b) {
 
 /* Eight mains and mirrors: the same to either side, and about axes a quarter turn apart. */
 TEST(tilts_have_the_symmetry_of_the_cut) {
-  judged j = judged_plain(design_b, 2.417);
+  OWNED(judged, j) = judged_plain(design_b, 2.417);
   abbe_gem_view_desc desc = small;
   desc.side = 64;
   for (int t = 10; t <= 30; t += 20) {
@@ -179,26 +166,24 @@ TEST(tilts_have_the_symmetry_of_the_cut) {
     for (int k = 0; k < 3; k++) {
       desc.axis_rad = axis[k] * DEG;
       desc.tilt_rad = sign[k] * t * DEG;
-      abbe_gem_view v = judged_view(&j, &desc);
+      OWNED(abbe_gem_view, v) = judged_view(&j, &desc);
       iso[k] = abbe_gem_view_amount(&v, ABBE_GEM_ISO);
       window[k] = abbe_gem_view_amount(&v, ABBE_GEM_DOWN);
-      abbe_gem_view_free(&v);
     }
     for (int k = 1; k < 3; k++) {
       assert_true(apart(iso[0], iso[k]) < 5);
       assert_true(apart(window[0], window[k]) < 5);
     }
   }
-  judged_free(&j);
 }
 
 TEST(errors_are_those_of_the_means) {
-  judged j = judged_plain(design_b, 2.417);
+  OWNED(judged, j) = judged_plain(design_b, 2.417);
   abbe_gem_view_desc desc = small;
-  abbe_gem_view coarse = judged_view(&j, &desc);
+  OWNED(abbe_gem_view, coarse) = judged_view(&j, &desc);
   desc.side = 112;
   desc.repeats = 16;
-  abbe_gem_view fine = judged_view(&j, &desc);
+  OWNED(abbe_gem_view, fine) = judged_view(&j, &desc);
   static const abbe_gem_amount amount[] = {ABBE_GEM_ISO, ABBE_GEM_COS, ABBE_GEM_RETURN,
                                            ABBE_GEM_GREEN, ABBE_GEM_RED};
   for (int k = 0; k < 5; k++) {
@@ -214,18 +199,15 @@ TEST(errors_are_those_of_the_means) {
   assert_true(apart(few.window, many.window) < 8);
   assert_true(apart(few.extinct, many.extinct) < 8);
   assert_true(apart(abbe_gem_view_contrast(&coarse), abbe_gem_view_contrast(&fine)) < 8);
-  abbe_gem_view_free(&coarse);
-  abbe_gem_view_free(&fine);
-  judged_free(&j);
 }
 
 TEST(threads_change_nothing) {
-  judged j = judged_plain(design_b, 2.417);
+  OWNED(judged, j) = judged_plain(design_b, 2.417);
   abbe_gem_view_desc desc = small;
   desc.threads = 1;
-  abbe_gem_view one = judged_view(&j, &desc);
+  OWNED(abbe_gem_view, one) = judged_view(&j, &desc);
   desc.threads = 5;
-  abbe_gem_view five = judged_view(&j, &desc);
+  OWNED(abbe_gem_view, five) = judged_view(&j, &desc);
   for (int a = 0; a < ABBE_GEM_AMOUNT_COUNT; a++) {
     const abbe_gem_number x = abbe_gem_view_amount(&one, (abbe_gem_amount)a);
     const abbe_gem_number y = abbe_gem_view_at(&five, (abbe_gem_amount)a, 0);
@@ -235,21 +217,18 @@ TEST(threads_change_nothing) {
   }
   for (size_t r = 0; r < one.repeats; r++)
     assert_memory_equal(one.colour[r], five.colour[r], sizeof one.colour[r]);
-  abbe_gem_view_free(&one);
-  abbe_gem_view_free(&five);
-  judged_free(&j);
 }
 
 /* A slab's picture is even. One of stripes, three tenths of a pixel wide, has their share of area
  * and their contrast, however coarse the pixels. */
 TEST(areas_and_contrast_do_not_depend_on_the_grid) {
   const double share = 0.3;
-  judged j = judged_plain(slab, 1.5);
+  OWNED(judged, j) = judged_plain(slab, 1.5);
   abbe_gem_view_desc desc = small;
   desc.head_rad = 0;
   for (size_t side = 16; side <= 64; side *= 2) {
     desc.side = side;
-    abbe_gem_view v = judged_view(&j, &desc);
+    OWNED(abbe_gem_view, v) = judged_view(&j, &desc);
     assert_near(abbe_gem_view_contrast(&v).value, 0, 1e-3);
     for (size_t i = 0; i < side * side * v.repeats; i++) {
       const size_t pixel = i / v.repeats;
@@ -266,9 +245,7 @@ TEST(areas_and_contrast_do_not_depend_on_the_grid) {
     assert_true(areas.brilliant.error < 0.5 / (double)side);
     assert_true(fabs(contrast.value - sqrt((1 - share) / share)) < 5 * contrast.error);
     assert_true(contrast.error < 2 / (double)side);
-    abbe_gem_view_free(&v);
   }
-  judged_free(&j);
 }
 
 static double deviations(abbe_gem_number n, double known) {
@@ -279,16 +256,14 @@ static double deviations(abbe_gem_number n, double known) {
  * together the half comes back of 0.1155736 and of 0.0736532. */
 TEST(slab_of_calcite_returns_what_each_wave_does) {
   const abbe_material calcite = crystal(1.65834, 1.65834, 1.48613);
-  judged j = judged_make(slab, &calcite, 1);
+  OWNED(judged, j) = judged_make(slab, &calcite, 1);
   abbe_gem_axes lying;
   OK(abbe_gem_axes_read("0,2,0", &lying, &error));
   OK(abbe_gem_stone_turn(&j.stone, &lying, &error));
-  abbe_gem_view view = judged_view(&j, &small);
+  OWNED(abbe_gem_view, view) = judged_view(&j, &small);
   assert_true(deviations(abbe_gem_view_amount(&view, ABBE_GEM_ISO), (0.1155736 + 0.0736532) / 2) <
               6);
   assert_near(mean(&view, ABBE_GEM_ISO), (0.1155736 + 0.0736532) / 2, 1e-3);
-  abbe_gem_view_free(&view);
-  judged_free(&j);
 }
 
 /* Two exponentials, never one of the mean: 10 mm wide, 5 mm thick. */
@@ -327,45 +302,44 @@ TEST(brightness_knows_how_a_crystal_lies) {
   for (size_t i = 0; i < sizeof stones / sizeof *stones; i++) {
     const double *n = stones[i].n;
     const abbe_material m = crystal(n[0], n[1], n[2]);
-    judged j = judged_make(design_a, &m, 1);
+    OWNED(judged, j) = judged_make(design_a, &m, 1);
     abbe_gem_orientation up = {0}, down = {.tilt_rad = 90 * DEG};
     OK(abbe_gem_orientation_judge(&j.stone, &j.weights, &view, ABBE_GEM_ISO, &up, &error));
     OK(abbe_gem_orientation_judge(&j.stone, &j.weights, &view, ABBE_GEM_ISO, &down, &error));
     assert_near(up.value.value, stones[i].upright, stones[i].off);
     assert_near(down.value.value, stones[i].lying, stones[i].off);
     assert_true(up.value.error < 0.005 && down.value.error < 0.005);
-    judged_free(&j);
   }
 }
 
 /* Nearly one index is one index. */
 TEST(two_indices_that_meet_are_one) {
   const abbe_material near = crystal(1.76, 1.76, 1.76000001);
-  judged glass_one = judged_plain(design_a, 1.76), crystal_one = judged_make(design_a, &near, 1);
+  judged glass_one = judged_plain(design_a, 1.76);
+  OWNED(judged, crystal_one) = judged_make(design_a, &near, 1);
   abbe_gem_view a = judged_view(&glass_one, &small), b = judged_view(&crystal_one, &small);
   assert_true(
       apart(abbe_gem_view_amount(&a, ABBE_GEM_ISO), abbe_gem_view_amount(&b, ABBE_GEM_ISO)) < 4);
   abbe_gem_view_free(&a);
   abbe_gem_view_free(&b);
   judged_free(&glass_one);
-  judged_free(&crystal_one);
 }
 
 TEST(axes_that_are_none_are_refused) {
   static const char *const wrong[] = {"1,0", "0,0,0", "1,0,0,", "1,0,0,0,1", "1,0,0,0,1,0,0", "up"};
   abbe_gem_axes axes = {.z = {0, 0, 1}, .x = {0, 0, -2}};
   const abbe_material topaz = crystal(1.607, 1.610, 1.617);
-  judged plain = judged_plain(slab, 1.5), three = judged_make(slab, &topaz, 1);
+  judged plain = judged_plain(slab, 1.5);
+  OWNED(judged, three) = judged_make(slab, &topaz, 1);
   REFUSED(ABBE_INVALID_ARGUMENT, "no axis", abbe_gem_stone_turn(&plain.stone, &axes, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "parallel", abbe_gem_stone_turn(&three.stone, &axes, &error));
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
     REFUSED(ABBE_INVALID_ARGUMENT, wrong[i], abbe_gem_axes_read(wrong[i], &axes, &error));
   judged_free(&plain);
-  judged_free(&three);
 }
 
 TEST(wrong_requests_are_refused) {
-  judged j = judged_plain(slab, 1.5);
+  OWNED(judged, j) = judged_plain(slab, 1.5);
   static const abbe_gem_view_desc wrong[] = {
       {.side = 4000}, {.repeats = 1}, {.repeats = 65}, {.head_rad = -0.1}, {.head_rad = 0.8}};
   for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
@@ -374,7 +348,6 @@ TEST(wrong_requests_are_refused) {
             abbe_gem_view_make(&j.stone, &j.weights, &wrong[i], &view, &error));
     assert_true(last_error.text[0] != '\0');
   }
-  judged_free(&j);
 }
 
 /* Two designs and what GemRay says of them at an index of 1.54, with its eye ten half widths away:
@@ -399,14 +372,12 @@ TEST(gemray_says_the_same) {
                  0.6376, 0.4502, 0.9734, 0.7848}};
   const abbe_gem_view_desc fine = {.side = 128, .repeats = 4, .threads = 2};
   for (size_t i = 0; i < sizeof stones / sizeof *stones; i++) {
-    judged j = judged_plain(stones[i].text, 1.54);
-    abbe_gem_view view = judged_view(&j, &fine);
+    OWNED(judged, j) = judged_plain(stones[i].text, 1.54);
+    OWNED(abbe_gem_view, view) = judged_view(&j, &fine);
     assert_near(mean(&view, ABBE_GEM_GEMRAY_ISO), stones[i].iso, 0.003);
     assert_near(mean(&view, ABBE_GEM_GEMRAY_COS), stones[i].cos, 0.003);
     assert_near(mean(&view, ABBE_GEM_ISO), stones[i].all, 0.003);
     assert_near(mean(&view, ABBE_GEM_COS), stones[i].all_cos, 0.003);
-    abbe_gem_view_free(&view);
-    judged_free(&j);
   }
 }
 
@@ -419,7 +390,7 @@ TEST(gemray_s_weights_are_of_the_angle_to_the_eye) {
     bool lit;
   } exits[] = {{5, false}, {9.9, false}, {10.1, true}, {40, true}, {89, true}, {91, false}};
   const abbe_gem_light light = abbe_gem_light_make(eye, 15 * ABBE_DEGREE);
-  abbe_gem_path *path = calloc(1, sizeof *path);
+  FREED abbe_gem_path *path = calloc(1, sizeof *path);
   path->count = 1;
   path->exit[0].share = 0.5f;
   for (size_t i = 0; i < sizeof exits / sizeof *exits; i++) {
@@ -432,5 +403,4 @@ TEST(gemray_s_weights_are_of_the_angle_to_the_eye) {
     assert_near((double)amount[ABBE_GEM_GEMRAY_SC2], lit * 2 * cos(a) * sqrt(1 - cos(a) * cos(a)),
                 1e-6);
   }
-  free(path);
 }

@@ -10,10 +10,10 @@
 
 /* The text of the picture that these rows make; the caller frees. */
 static char *draw(abbe_known_answer *row, size_t count) {
-  char path[64], *text = NULL;
+  char *text = NULL;
   size_t size = 0;
   const abbe_known_answers answers = {.count = count, .row = row};
-  snprintf(path, sizeof path, "/tmp/abbe_test_known_chart_%ld.svg", (long)getpid());
+  const char *path = printed("/tmp/abbe_test_known_chart_%ld.svg", (long)getpid());
   OK(abbe_known_chart_write(path, &answers, &error));
   OK(abbe_file_read(path, 1 << 22, &text, &size, &error));
   unlink(path);

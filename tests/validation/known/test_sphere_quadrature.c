@@ -6,6 +6,8 @@
 #include "spectral/optics.h"
 #include "validation/known/sphere_quadrature.h"
 
+HOLDS(abbe_sphere_quadrature);
+
 static abbe_sphere_quadrature *make(const abbe_sphere_setup *setup) {
   abbe_sphere_quadrature *q = NULL;
   OK(abbe_sphere_quadrature_make(setup, &q, &error));
@@ -13,10 +15,9 @@ static abbe_sphere_quadrature *make(const abbe_sphere_setup *setup) {
 }
 
 static double enclosed(const abbe_sphere_setup *setup, double radius_m) {
-  abbe_sphere_quadrature *q = make(setup);
+  HELD(abbe_sphere_quadrature, q) = make(setup);
   double flux = NAN;
   OK(abbe_sphere_quadrature_enclosed(q, radius_m, &flux, &error));
-  abbe_sphere_quadrature_free(q);
   return flux;
 }
 
@@ -75,7 +76,7 @@ TEST(the_tertiary_rainbow_is_a_fold) {
   const double *fold = NULL;
   s.without_direct_order = true;
   s.inner_orders = 2;
-  abbe_sphere_quadrature *q = make(&s);
+  HELD(abbe_sphere_quadrature, q) = make(&s);
   for (size_t i = abbe_sphere_quadrature_folds(q, &fold); i-- > 0;)
     assert_true(fold[i] > tan(80 * ABBE_PI / 180));
   abbe_sphere_quadrature_free(q);
@@ -86,7 +87,6 @@ TEST(the_tertiary_rainbow_is_a_fold) {
   for (size_t i = 0; i < count; i++)
     seen = seen || fabs(atan(fold[i]) * 180 / ABBE_PI - 41.6) < 0.05;
   assert_true(seen);
-  abbe_sphere_quadrature_free(q);
 }
 
 /* Below the focus the marginal rays cross the axis first: all light lies inside the fold until the
@@ -100,10 +100,9 @@ TEST(the_fold_bounds_the_core) {
     if (turn < 1) widest = fmax(widest, x);
   }
   const double *fold = NULL;
-  abbe_sphere_quadrature *q = make(&s);
+  HELD(abbe_sphere_quadrature, q) = make(&s);
   assert_int_equal(abbe_sphere_quadrature_folds(q, &fold), 1);
   assert_near(fold[0], widest, 1e-9);
-  abbe_sphere_quadrature_free(q);
 }
 
 /* ---- against rays traced as vectors ---- */
@@ -180,7 +179,7 @@ static void compare(const abbe_sphere_setup *s) {
   double radius[CIRCLES], sum[CIRCLES] = {0};
   for (int k = 0; k < CIRCLES; k++) radius[k] = s->radius * 0.02 * pow(2, k);
   trace(s, radius, sum);
-  abbe_sphere_quadrature *q = make(s);
+  HELD(abbe_sphere_quadrature, q) = make(s);
   double incident = s->power * ABBE_PI * pow(s->radius, 2);
   if (s->light_distance > 0)
     incident = s->power * 2 * ABBE_PI * (1 - sqrt(1 - pow(s->radius / s->light_distance, 2)));
@@ -190,7 +189,6 @@ static void compare(const abbe_sphere_setup *s) {
     OK(abbe_sphere_quadrature_enclosed(q, radius[k], &flux, &error));
     assert_near(flux, sum[k], tolerance);
   }
-  abbe_sphere_quadrature_free(q);
 }
 
 TEST(every_order_agrees_with_traced_rays) {
@@ -215,14 +213,13 @@ TEST(every_order_agrees_with_traced_rays) {
 TEST(wider_circles_hold_more) {
   abbe_sphere_setup s = {.radius = 0.05, .index = 1.6, .plane_distance = 0.09, .power = 2};
   s.inner_orders = 3;
-  abbe_sphere_quadrature *q = make(&s);
+  HELD(abbe_sphere_quadrature, q) = make(&s);
   double inner = 0, outer;
   for (int i = 0; i <= 32; i++) {
     OK(abbe_sphere_quadrature_enclosed(q, 0.08 * i / 32, &outer, &error));
     assert_true(outer >= inner);
     inner = outer;
   }
-  abbe_sphere_quadrature_free(q);
 }
 
 /* Scaling everything changes nothing but the unit. */
@@ -254,10 +251,9 @@ TEST(nothing_is_made) {
 }
 
 TEST(white_light_is_the_sum_of_its_bands) {
-  OWNED(abbe_material_table, table) = {0};
   const abbe_material *flint = NULL;
   const abbe_illuminant d65 = {0};
-  OK(abbe_material_table_load(NULL, &table, &error));
+  MADE(abbe_material_table, table, abbe_material_table_load(NULL, &table, &error));
   OK(abbe_material_table_find(&table, "sf10", &flint, &error));
   abbe_sphere_setup s = {.radius = 0.04, .plane_distance = 0.07, .power = 5};
   const double radius[] = {0.002, 0.01, INFINITY};
@@ -297,10 +293,9 @@ TEST(wrong_setups_are_refused) {
   refuse((w = s, w.power = -1, w), "power is -1");
   refuse((w = s, w.attenuation_per_m = -1, w), "attenuation_per_m is -1");
   refuse((w = s, w.inner_orders = 65, w), "65 inner orders");
-  abbe_sphere_quadrature *q = make(&s);
+  HELD(abbe_sphere_quadrature, q) = make(&s);
   double flux = 0;
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_sphere_quadrature_enclosed(q, -1, &flux, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_sphere_quadrature_enclosed(q, NAN, &flux, &error));
-  abbe_sphere_quadrature_free(q);
   abbe_sphere_quadrature_free(NULL);
 }

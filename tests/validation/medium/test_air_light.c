@@ -55,12 +55,12 @@ typedef struct fixture {
 
 static void make(const char *text, fixture *f) {
   const double lambda_nm[STEPS + 1] = {500, 525, 550, 575, 600};
-  load_text(text, &f->scene);
+  f->scene = scene_of(text);
   OK(abbe_geometry_make(&f->scene, &f->geometry, &error));
   OK(abbe_media_make(&f->geometry, lambda_nm, STEPS, &f->media, &error));
 }
 
-static void drop(fixture *f) {
+static void fixture_free(fixture *f) {
   abbe_media_free(&f->media);
   abbe_geometry_free(&f->geometry);
   abbe_scene_free(&f->scene);
@@ -110,19 +110,15 @@ static double expected(const fixture *f, const double o[3], double reach) {
 TEST(lamps_light_the_mist) {
   static const char *const lights[] = {POINT_LIGHT, SPOT, SUN, PANEL};
   for (size_t i = 0; i < sizeof lights / sizeof *lights; i++) {
-    fixture f;
-    char text[2048];
-    snprintf(text, sizeof text,
-             CAMERA "%s" MIST FLOOR "- {name: plate, shape: rectangle, width: 0.1, height: 0.1, "
-                    "reflectance: 1, transform: [{translate: [0, 0, 0.35]}]}\n",
-             lights[i]);
-    make(text, &f);
+    FILLED(fixture, f,
+           make(printed(CAMERA "%s" MIST FLOOR
+                               "- {name: plate, shape: rectangle, width: 0.1, height: 0.1, "
+                               "reflectance: 1, transform: [{translate: [0, 0, 0.35]}]}\n",
+                        lights[i]),
+                &f));
     const double o[3] = {-0.8, 0.02, 0.15}, unit = f.geometry.unit;
-    abbe_air_ray ray = {.geometry = &f.geometry,
-                        .haze = &f.media.haze,
-                        .d = {1, 0, 0},
-                        .to = (float)(1.5 / unit),
-                        .step = 1};
+    abbe_air_ray ray = FIELDS(.geometry = &f.geometry, .haze = &f.media.haze, .d = {1, 0, 0},
+                              .to = (float)(1.5 / unit), .step = 1);
     abbe_geometry_to_frame(&f.geometry, o, ray.o);
     double sum = 0;
     uint32_t rays = 0;
@@ -133,14 +129,13 @@ TEST(lamps_light_the_mist) {
     const double exact = expected(&f, o, 1.5);
     assert_true(exact > 1e-3 && rays > 0);
     assert_near(sum / exact, 1, 4e-3);
-    drop(&f);
   }
 }
 
 /* In light that is alike from everywhere scattering alone changes nothing: what it takes it gives,
  * but for what it would have to scatter again. */
 TEST(an_even_sky_lights_mist_evenly) {
-  fixture f;
+  OWNED(fixture, f) = {0};
   make("materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"
        "environment: {uniform: 3}\n"
        "medium: {scattering: 1.0e-3, g: 0.7, box: [[-1, -1, 0], [1, 1, 1]]}\n"
@@ -149,11 +144,8 @@ TEST(an_even_sky_lights_mist_evenly) {
        &f);
   const abbe_environment_light light = {.environment = f.scene.environment};
   const double o[3] = {-0.9, 0.1, 0.5};
-  abbe_air_ray ray = {.geometry = &f.geometry,
-                      .haze = &f.media.haze,
-                      .d = {1, 0, 0},
-                      .to = (float)(1.5 / f.geometry.unit),
-                      .step = 1};
+  abbe_air_ray ray = FIELDS(.geometry = &f.geometry, .haze = &f.media.haze, .d = {1, 0, 0},
+                            .to = (float)(1.5 / f.geometry.unit), .step = 1);
   abbe_geometry_to_frame(&f.geometry, o, ray.o);
   uint64_t random = 1;
   uint32_t rays = 0;
@@ -166,5 +158,4 @@ TEST(an_even_sky_lights_mist_evenly) {
     sum += (double)rgb[1] / 20000;
   }
   assert_near(sum / (3 * 1e-3 * 1.5), 1, 0.02);
-  drop(&f);
 }

@@ -68,20 +68,18 @@ TEST(a_gather_finds_what_is_there) {
   static const float radii[] = {0.05f, 0.004f, 0.2f};
   FREED abbe_haze_photon *photon = malloc(COUNT * sizeof *photon);
   assert_non_null(photon);
-  abbe_haze_grid grid = {0};
+  OWNED(abbe_haze_grid, grid) = {0};
   for (size_t i = 0; i < 3; i++) {
     fill(photon, sizes[i]);
     OK(abbe_haze_grid_fill(&grid, photon, COUNT, radii[i], &error));
     check_rays(&grid, photon, i == 1 ? 0.03f : radii[i]); /* wider than it was made for, too */
   }
-  abbe_haze_grid_free(&grid);
 }
 
 TEST(none_and_all_in_one_place) {
   const float o[3] = {0}, d[3] = {0, 0, 1};
-  abbe_haze_grid grid = {0};
   found f = {0};
-  abbe_haze_grid_gather(&grid, o, d, 0, 1, 0.1f, 0, take, &f);
+  FILLED(abbe_haze_grid, grid, abbe_haze_grid_gather(&grid, o, d, 0, 1, 0.1f, 0, take, &f));
   OK(abbe_haze_grid_fill(&grid, NULL, 0, 0.1f, &error));
   abbe_haze_grid_gather(&grid, o, d, 0, 1, 0.1f, 0, take, &f);
   assert_int_equal(f.count, 0);
@@ -95,5 +93,4 @@ TEST(none_and_all_in_one_place) {
   abbe_haze_grid_gather(&grid, o, d, 0, 1, 0.001f, 0, take, &f);
   abbe_haze_grid_gather(&grid, o, d, 0, 1, 0.1f, -1, take, &f);
   assert_int_equal(f.count, 0);
-  abbe_haze_grid_free(&grid);
 }

@@ -28,11 +28,11 @@ static abbe_bounded_trace make(const abbe_bounded_trace_desc *desc, abbe_image *
 static void check_picture(const abbe_bounded_trace_desc *desc, size_t passes,
                           const abbe_image *picture) {
   abbe_trace_desc own = desc->trace;
-  abbe_image raw, filtered;
+  abbe_image filtered;
   own.guides = desc->filtered;
-  abbe_tracer *tracer = make_tracer(&scene, &own);
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &own);
   run_passes(tracer, passes);
-  OK(abbe_tracer_picture(tracer, &raw, &error));
+  MADE(abbe_image, raw, abbe_tracer_picture(tracer, &raw, &error));
   const abbe_denoise_desc denoise = {0};
   if (desc->filtered) {
     OK(abbe_denoise_picture(&raw, &denoise, &filtered, &error));
@@ -41,12 +41,10 @@ static void check_picture(const abbe_bounded_trace_desc *desc, size_t passes,
   } else {
     check_same_image(picture, &raw);
   }
-  abbe_image_free(&raw);
-  abbe_tracer_free(tracer);
 }
 
 static void begin(void) {
-  load_text(SCENE, &scene);
+  scene = scene_of(SCENE);
 }
 
 static void finish(void) {

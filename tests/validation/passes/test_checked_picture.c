@@ -17,10 +17,9 @@ static abbe_image make_picture(size_t passes) {
   abbe_image image;
   abbe_trace_desc own = trace;
   own.seed = 17;
-  abbe_tracer *tracer = make_tracer(&scene, &own);
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &own);
   run_passes(tracer, passes);
   OK(abbe_tracer_picture(tracer, &image, &error));
-  abbe_tracer_free(tracer);
   return image;
 }
 
@@ -32,7 +31,7 @@ static abbe_checked_picture check(const abbe_image *picture, double max_error, a
 }
 
 static void begin(void) {
-  load_text(SCENE, &scene);
+  scene = scene_of(SCENE);
 }
 
 static void finish(void) {
@@ -43,32 +42,26 @@ GROUP(begin, finish);
 
 /* To tell that a good picture is one takes fewer passes than to make one. */
 TEST(a_good_picture) {
-  abbe_image traced, picture = make_picture(1024);
+  OWNED(abbe_image, traced) = {0}, picture = make_picture(1024);
   const abbe_checked_picture c = check(&picture, 2, &traced);
   if (!(c.given.bound <= 2) || c.traced.bound <= 2)
     fail_msg("%zu passes: %g, and %g of their own", c.passes, c.given.bound, c.traced.bound);
   assert_true(c.given.estimate <= c.given.bound && c.passes >= 2);
   assert_int_equal(traced.width, 24);
-  abbe_image_free(&traced);
-  abbe_image_free(&picture);
 }
 
 TEST(a_bad_picture) {
-  abbe_image traced, picture = make_picture(64);
+  OWNED(abbe_image, traced) = {0}, picture = make_picture(64);
   for (size_t i = 0; i < picture.width * picture.height * picture.channels; i++)
     picture.data[i] *= 1.8f;
   const abbe_checked_picture c = check(&picture, 2, &traced);
   assert_true(c.given.bound > 2);
   if (!(c.traced.bound <= 2)) fail_msg("%zu passes: %g of their own", c.passes, c.traced.bound);
   /* The passes are the tracer's own, to the bit. */
-  OWNED(abbe_image, own);
-  abbe_tracer *tracer = make_tracer(&scene, &trace);
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &trace);
   run_passes(tracer, c.passes);
-  OK(abbe_tracer_picture(tracer, &own, &error));
+  MADE(abbe_image, own, abbe_tracer_picture(tracer, &own, &error));
   check_same_image(&own, &traced);
-  abbe_tracer_free(tracer);
-  abbe_image_free(&traced);
-  abbe_image_free(&picture);
 }
 
 /* A clock that loses a second each time somebody looks. */
@@ -78,22 +71,19 @@ static double look(void *user) {
 
 static abbe_checked_picture check_in(double seconds, double first_s, const abbe_image *picture,
                                      double max_error, bool only_check) {
-  abbe_image traced;
   abbe_checked_picture out;
-  const abbe_checked_picture_desc desc = {.trace = trace,
-                                          .max_error = max_error,
-                                          .only_check = only_check,
-                                          .left = {look, &seconds},
-                                          .first_s = first_s};
-  OK(abbe_checked_picture_make(&scene, &desc, picture, &traced, &out, &error));
+  const abbe_checked_picture_desc desc =
+      FIELDS(.trace = trace, .max_error = max_error, .only_check = only_check,
+             .left = {look, &seconds}, .first_s = first_s);
+  MADE(abbe_image, traced,
+       abbe_checked_picture_make(&scene, &desc, picture, &traced, &out, &error));
   assert_true((traced.data == NULL) == out.timed_out);
-  abbe_image_free(&traced);
   return out;
 }
 
 /* Passes are begun where they end in time, and what was told before stands. */
 TEST(in_the_time_that_is_left) {
-  abbe_image picture = make_picture(64), traced;
+  OWNED(abbe_image, picture) = make_picture(64), traced = {0};
   abbe_checked_picture c = check_in(100, 90, &picture, 1e-3, false);
   assert_int_equal(c.passes, 0);
   assert_true(c.timed_out && isnan(c.given.bound));
@@ -111,17 +101,15 @@ TEST(in_the_time_that_is_left) {
   assert_false(c.timed_out || free.timed_out);
   assert_int_equal(c.passes, free.passes);
   assert_near(c.given.bound, free.given.bound, 0);
-  abbe_image_free(&traced);
   /* Time that ends amid passes. */
   c = check_in(5, 0, &picture, 1e-3, false);
   assert_true(c.timed_out);
   assert_int_equal(c.passes, 0);
-  abbe_image_free(&picture);
 }
 
 /* Who only asks is answered as soon as the picture is known to be no good. */
 TEST(a_bad_picture_is_soon_known) {
-  abbe_image picture = make_picture(64);
+  OWNED(abbe_image, picture) = make_picture(64);
   for (size_t i = 0; i < picture.width * picture.height * picture.channels; i++)
     picture.data[i] *= 4;
   const abbe_checked_picture all = check_in(1e9, 1, &picture, 1, false);
@@ -129,12 +117,12 @@ TEST(a_bad_picture_is_soon_known) {
   if (!(soon.passes < all.passes && soon.given.estimate > 1))
     fail_msg("%zu of %zu passes: %g", soon.passes, all.passes, soon.given.estimate);
   assert_false(soon.timed_out);
-  abbe_image_free(&picture);
 }
 
 TEST(what_ends_it) {
   int asked = 0;
-  abbe_image traced, picture = make_picture(1), small;
+  abbe_image traced;
+  OWNED(abbe_image, picture) = make_picture(1);
   abbe_checked_picture out;
   abbe_checked_picture_desc desc = {.trace = trace, .progress = stop_at_once, .user = &asked};
   REFUSED(ABBE_INVALID_ARGUMENT, "an error of 0 cannot be kept",
@@ -145,10 +133,8 @@ TEST(what_ends_it) {
   assert_int_equal(asked, 1);
   assert_null(traced.data);
   desc.progress = NULL;
-  OK(abbe_image_make(8, 8, 1, (const char *const[]){"Y"}, &small, &error));
+  MADE(abbe_image, small, abbe_image_make(8, 8, 1, (const char *const[]){"Y"}, &small, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "",
           abbe_checked_picture_make(&scene, &desc, &small, &traced, &out, &error));
   assert_null(traced.data);
-  abbe_image_free(&small);
-  abbe_image_free(&picture);
 }

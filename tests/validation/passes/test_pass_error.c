@@ -83,18 +83,13 @@ static abbe_image blur(const abbe_image *in) {
 
 /* What abbe compare says of the caustic. */
 static double true_error(const abbe_image *truth, const abbe_image *picture) {
-  OWNED(abbe_field, a);
-  OWNED(abbe_field, b);
-  abbe_mask mask;
-  OWNED(abbe_comparison, c);
+  OWNED(abbe_mask, mask) = {0};
   const abbe_compare_options options = {.mask = &mask};
-  OK(abbe_field_make(truth, "truth", &a, &error));
-  OK(abbe_field_make(picture, "picture", &b, &error));
+  MADE(abbe_field, a, abbe_field_make(truth, "truth", &a, &error));
+  MADE(abbe_field, b, abbe_field_make(picture, "picture", &b, &error));
   OK(abbe_mask_make_caustic(&a, "truth", ABBE_MASK_CAUSTIC_SHARE, &mask, &error));
-  OK(abbe_compare(&a, &b, &options, &c, &error));
-  const double value = c.mask.metric[ABBE_COMPARE_CIEDE2000_MEAN].value;
-  abbe_mask_free(&mask);
-  return value;
+  MADE(abbe_comparison, c, abbe_compare(&a, &b, &options, &c, &error));
+  return c.mask.metric[ABBE_COMPARE_CIEDE2000_MEAN].value;
 }
 
 typedef struct trials {
@@ -105,13 +100,13 @@ typedef struct trials {
 
 static trials run(size_t part, size_t passes, double often, bool filtered) {
   trials t = {.least = INFINITY};
-  abbe_image truth = make_truth();
+  OWNED(abbe_image, truth) = make_truth();
   uint64_t state = 7;
   for (int i = 0; i < TRIALS; i++) {
     abbe_pass_error own;
-    abbe_image a = make_mean(part, often, &state, NULL, 0);
-    abbe_image b = make_mean(passes, often, &state, &a, part);
-    abbe_image fa = blur(&a), fb = blur(&b);
+    OWNED(abbe_image, a) = make_mean(part, often, &state, NULL, 0);
+    OWNED(abbe_image, b) = make_mean(passes, often, &state, &a, part);
+    OWNED(abbe_image, fa) = blur(&a), fb = blur(&b);
     abbe_pass_pictures p = {.part = &a, .whole = &b, .part_passes = part, .passes = passes};
     if (filtered) {
       p.filtered_part = &fa;
@@ -124,12 +119,7 @@ static trials run(size_t part, size_t passes, double often, bool filtered) {
     t.mean += own.estimate / met / TRIALS;
     t.widest = fmax(t.widest, own.bound / met);
     t.kept += own.bound >= met;
-    abbe_image_free(&a);
-    abbe_image_free(&b);
-    abbe_image_free(&fa);
-    abbe_image_free(&fb);
   }
-  abbe_image_free(&truth);
   return t;
 }
 
@@ -173,14 +163,14 @@ TEST(a_filter) {
 /* A picture that no pass made, off by what is known: blurred, and 10 % too bright. */
 static trials run_given(size_t passes, double often, double factor) {
   trials t = {.least = INFINITY};
-  abbe_image truth = make_truth(), given = blur(&truth);
+  OWNED(abbe_image, truth) = make_truth(), given = blur(&truth);
   for (size_t i = 0; i < 6 * PIXELS; i++) given.data[i] *= (float)factor;
   const double met = true_error(&truth, &given);
   uint64_t state = 11;
   for (int i = 0; i < TRIALS; i++) {
     abbe_pass_error own;
-    abbe_image a = make_mean(passes / 2, often, &state, NULL, 0);
-    abbe_image b = make_mean(passes, often, &state, &a, passes / 2);
+    OWNED(abbe_image, a) = make_mean(passes / 2, often, &state, NULL, 0);
+    OWNED(abbe_image, b) = make_mean(passes, often, &state, &a, passes / 2);
     abbe_pass_pictures p = {.part = &a, .whole = &b, .part_passes = passes / 2, .passes = passes};
     OK(abbe_pass_error_of_picture(&p, &given, &own, &error));
     t.least = fmin(t.least, own.estimate / met);
@@ -188,11 +178,7 @@ static trials run_given(size_t passes, double often, double factor) {
     t.mean += own.estimate / met / TRIALS;
     t.widest = fmax(t.widest, own.bound / met);
     t.kept += own.bound >= met;
-    abbe_image_free(&a);
-    abbe_image_free(&b);
   }
-  abbe_image_free(&given);
-  abbe_image_free(&truth);
   return t;
 }
 
@@ -207,30 +193,27 @@ TEST(a_picture_of_another_make) {
   t = run_given(16, 0.1, 1); /* specks: nothing is told */
   assert_true(isnan(t.mean) && t.kept == 0);
   abbe_pass_error own;
-  abbe_image image = make_image(), truth = make_truth(), small;
+  OWNED(abbe_image, image) = make_image(), truth = make_truth();
   abbe_pass_pictures p = {.part = &truth, .whole = &truth, .part_passes = 1, .passes = 2};
   OK(abbe_pass_error_of_picture(&p, &truth, &own, &error));
   assert_near(own.bound, 0, 1e-6);
   OK(abbe_pass_error_of_picture(&p, &image, &own, &error)); /* black */
   assert_true(isnan(own.estimate) && isnan(own.bound));
-  OK(abbe_image_make(8, 8, 6, channels, &small, &error));
+  MADE(abbe_image, small, abbe_image_make(8, 8, 6, channels, &small, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "differ in size",
           abbe_pass_error_of_picture(&p, &small, &own, &error));
-  abbe_image_free(&small);
-  abbe_image_free(&truth);
-  abbe_image_free(&image);
 }
 
 TEST(what_has_no_caustic) {
   abbe_pass_error own;
-  abbe_image image = make_image();
+  OWNED(abbe_image, image) = make_image();
   abbe_pass_pictures p = {.part = &image, .whole = &image, .part_passes = 1, .passes = 2};
   OK(abbe_pass_error_make(&p, &own, &error));
   assert_true(isnan(own.estimate) && isnan(own.bound));
   for (size_t i = 0; i < PIXELS; i++) image.data[6 * i] = 1; /* lit, and not through refractors */
   OK(abbe_pass_error_make(&p, &own, &error));
   assert_true(isnan(own.estimate) && isnan(own.bound));
-  abbe_image truth = make_truth(), other = make_truth();
+  OWNED(abbe_image, truth) = make_truth(), other = make_truth();
   p = (abbe_pass_pictures){.part = &truth,
                            .whole = &truth,
                            .part_passes = 1,
@@ -242,14 +225,10 @@ TEST(what_has_no_caustic) {
   other.data[6 * 4 + 1] = NAN; /* one of the caustic's: no error is not what is told */
   OK(abbe_pass_error_make(&p, &own, &error));
   assert_true(isnan(own.estimate) && isnan(own.bound));
-  abbe_image_free(&truth);
-  abbe_image_free(&other);
   p = (abbe_pass_pictures){.part = &image, .whole = &image, .part_passes = 1, .passes = 2};
   p.part_passes = 2;
   REFUSED(ABBE_INVALID_ARGUMENT, "2 of 2 passes", abbe_pass_error_make(&p, &own, &error));
-  OWNED(abbe_image, small);
-  OK(abbe_image_make(8, 8, 6, channels, &small, &error));
+  MADE(abbe_image, small, abbe_image_make(8, 8, 6, channels, &small, &error));
   p = (abbe_pass_pictures){.part = &small, .whole = &image, .part_passes = 1, .passes = 2};
   REFUSED(ABBE_INVALID_ARGUMENT, "differ in size", abbe_pass_error_make(&p, &own, &error));
-  abbe_image_free(&image);
 }

@@ -39,13 +39,10 @@ static abbe_result find(const abbe_ranks *ranks, void *user) {
   asked *a = user;
   a->search.progress = progress;
   a->search.user = a;
-  const abbe_ranked_optimum_desc desc = {.cut = &a->j.cut,
-                                         .polyhedron = &a->j.polyhedron,
-                                         .material = &a->quartz,
-                                         .wavelengths = &a->j.wavelengths,
-                                         .weights = &a->j.weights,
-                                         .search = &a->search,
-                                         .path = path};
+  const abbe_ranked_optimum_desc desc =
+      FIELDS(.cut = &a->j.cut, .polyhedron = &a->j.polyhedron, .material = &a->quartz,
+             .wavelengths = &a->j.wavelengths, .weights = &a->j.weights, .search = &a->search,
+             .path = path);
   return abbe_ranked_optimum_find(ranks, &desc, &a->out, &a->error);
 }
 

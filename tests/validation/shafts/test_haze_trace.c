@@ -8,25 +8,22 @@
 
 static void trace(const char *text, const abbe_trace_desc *desc, size_t passes, abbe_image *picture,
                   abbe_trace_statistics *statistics) {
-  abbe_scene scene;
-  load_text(text, &scene);
-  abbe_tracer *tracer = make_tracer(&scene, desc);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, desc);
   run_passes(tracer, passes);
   if (picture != NULL) OK(abbe_tracer_picture(tracer, picture, &error));
   if (statistics != NULL) abbe_tracer_statistics(tracer, statistics);
-  abbe_tracer_free(tracer);
-  abbe_scene_free(&scene);
 }
 
 TEST(the_ledger_closes) {
   static const char *const scenes[] = {
       CAMERA POINT_LIGHT MIST("2") FLOOR BALL("murk"),
-      CAMERA SUN MIST("0.5") FLOOR "- {name: cloudy, shape: sphere, radius: 0.08, transform: "
-                                   "[{translate: [0, 0, 0.2]}], material: smoke, "
-                                   "medium: {scattering: [[400, 9], [700, 3]], g: 0.7}}\n",
+      CAMERA SUN MIST("0.5") FLOOR
+      "- {name: cloudy, shape: sphere, radius: 0.08, transform: [{translate: [0, 0, 0.2]}], "
+      "material: smoke, medium: {scattering: [[400, 9], [700, 3]], g: 0.7}}\n",
       /* a receiver that stands in what scatters */
-      CAMERA SUN FLOOR "- {name: pool, shape: box, size: [0.4, 0.4, 0.2], transform: "
-                       "[{translate: [0, 0, 0.05]}], material: crown, medium: {scattering: 4}}\n"};
+      CAMERA SUN FLOOR "- {name: pool, shape: box, size: [0.4, 0.4, 0.2], transform: [{translate: "
+                       "[0, 0, 0.05]}], material: crown, medium: {scattering: 4}}\n"};
   for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
     abbe_trace_statistics s;
     const abbe_trace_desc desc = {.width = 8, .height = 8, .no_map = true, .photons = 1 << 14};
@@ -55,9 +52,8 @@ TEST(what_is_left_is_known) {
 
 TEST(zeros_change_no_bit) {
   const abbe_trace_desc desc = {.width = 16, .height = 12, .no_map = true, .photons = 1 << 13};
-  OWNED(abbe_image, clear);
   OWNED(abbe_image, zero);
-  trace(CAMERA POINT_LIGHT FLOOR BALL("murk"), &desc, 2, &clear, NULL);
+  FILLED(abbe_image, clear, trace(CAMERA POINT_LIGHT FLOOR BALL("murk"), &desc, 2, &clear, NULL));
   trace(CAMERA POINT_LIGHT MIST("0") FLOOR
         "- {name: ball, shape: sphere, radius: 0.08, levels: 4, transform: [{translate: [0, 0, "
         "0.2]}], material: murk, medium: {scattering: 0, g: 0.5}}\n",
@@ -69,11 +65,9 @@ TEST(threads_change_no_bit) {
   static const char text[] = CAMERA POINT_LIGHT MIST("[[400, 3], [700, 1]]") FLOOR BALL("crown");
   abbe_trace_desc desc = {
       .width = 16, .height = 12, .no_map = true, .photons = 1 << 15, .threads = 1};
-  OWNED(abbe_image, one);
-  OWNED(abbe_image, three);
-  trace(text, &desc, 2, &one, NULL);
+  FILLED(abbe_image, one, trace(text, &desc, 2, &one, NULL));
   desc.threads = 3;
-  trace(text, &desc, 2, &three, NULL);
+  FILLED(abbe_image, three, trace(text, &desc, 2, &three, NULL));
   check_same_image(&one, &three);
 }
 
@@ -94,9 +88,8 @@ TEST(photons_bring_what_came_straight) {
   static const char *const scenes[] = {VIEW, VIEW ROOF, VIEW ROOF PANE};
   double sum[3];
   for (int i = 0; i < 3; i++) {
-    OWNED(abbe_image, picture);
     const abbe_trace_desc desc = {.width = 8, .height = 8, .no_map = true, .photons = 1 << 16};
-    trace(scenes[i], &desc, 4, &picture, NULL);
+    FILLED(abbe_image, picture, trace(scenes[i], &desc, 4, &picture, NULL));
     sum[i] = channel_sum(&picture, "G");
   }
   assert_true(sum[0] > 0);

@@ -21,13 +21,8 @@ static void add(void *user, const abbe_shaft_splat *splat) {
 /* From (-2, 0.1, 0.25) along +x, half a watt each, over 4 m or up to a wall. */
 static void shine(abbe_shaft_photons *s, const abbe_geometry *g, double length) {
   const double from[3] = {-2, 0.1, 0.25};
-  abbe_light_stretch way = {.d = {1, 0, 0},
-                            .length = (float)(length / g->unit),
-                            .flux = 0.5f,
-                            .step = 1,
-                            .within = 0.5f,
-                            .steps = 2,
-                            .medium = -1};
+  abbe_light_stretch way = FIELDS(.d = {1, 0, 0}, .length = (float)(length / g->unit), .flux = 0.5f,
+                                  .step = 1, .within = 0.5f, .steps = 2, .medium = -1);
   abbe_geometry_to_frame(g, from, way.o);
   seen = 0;
   for (uint32_t i = 0; i < PHOTONS; i++) {
@@ -59,20 +54,16 @@ static double expected(const abbe_trace_camera *c, const abbe_geometry *g, doubl
 TEST(a_beam_is_seen_as_bright_as_it_is) {
   const double lambda_nm[STEPS + 1] = {500, 550, 600};
   for (int wall = 0; wall < 2; wall++) {
-    char text[1024];
-    OWNED(abbe_scene, scene);
-    abbe_geometry g;
-    abbe_media m;
     abbe_trace_camera camera;
     /* the wall stands across the beam, edge on to the eye; the screen before a part of the beam */
-    snprintf(text, sizeof text, SCENE FLOOR "%s",
-             wall ? "- {name: screen, shape: rectangle, width: 0.4, height: 0.4, reflectance: 1, "
-                    "transform: [{rotate: {axis: [1, 0, 0], angle: 90}}, "
-                    "{translate: [0.2, -0.5, 0.3]}]}\n"
-                  : "");
-    load_text(text, &scene);
-    OK(abbe_geometry_make(&scene, &g, &error));
-    OK(abbe_media_make(&g, lambda_nm, STEPS, &m, &error));
+    OWNED(abbe_scene, scene) = scene_of(printed(
+        SCENE FLOOR "%s",
+        wall ? "- {name: screen, shape: rectangle, width: 0.4, height: 0.4, reflectance: 1, "
+               "transform: [{rotate: {axis: [1, 0, 0], angle: 90}}, {translate: [0.2, -0.5, "
+               "0.3]}]}\n"
+             : ""));
+    MADE(abbe_geometry, g, abbe_geometry_make(&scene, &g, &error));
+    MADE(abbe_media, m, abbe_media_make(&g, lambda_nm, STEPS, &m, &error));
     abbe_trace_camera_make(&g, 1, 1, &camera);
     FREED abbe_shaft_photons *s = aligned_alloc(64, (sizeof *s + 63) / 64 * 64);
     memset(s, 0, sizeof *s);
@@ -111,7 +102,5 @@ TEST(a_beam_is_seen_as_bright_as_it_is) {
     shine(s, &g, 1.4);
     assert_int_equal(s->count, before);
     abbe_shaft_photons_free(s);
-    abbe_media_free(&m);
-    abbe_geometry_free(&g);
   }
 }

@@ -22,7 +22,7 @@ TEST(order_and_threads_do_not_matter) {
   abbe_whole_sum adding[4][3 * VALUES];
   for (int way = 0; way < 4; way++) {
     size_t threads = (size_t)way + 1;
-    abbe_accumulator a = make(VALUES, threads, 1e6);
+    OWNED(abbe_accumulator, a) = make(VALUES, threads, 1e6);
     for (int pass = 0; pass < 3; pass++) {
       for (int i = 0; i < COUNT; i++) {
         int j = way % 2 ? COUNT - 1 - i : i;
@@ -38,7 +38,6 @@ TEST(order_and_threads_do_not_matter) {
       error[way][v] = abbe_accumulator_error(&a, v);
     }
     assert_int_equal(abbe_accumulator_cuts(&a), 0);
-    abbe_accumulator_free(&a);
   }
   for (int way = 1; way < 4; way++) {
     assert_memory_equal(mean[0], mean[way], sizeof mean[0]);
@@ -56,14 +55,13 @@ TEST(order_of_passes_does_not_matter) {
     x[i] = (float)(random_normal(&random) * exp(random_between(&random, -20, 3)));
   abbe_whole_sum sum[3] = {0}, square[3][2] = {{0}};
   for (int way = 0; way < 3; way++) {
-    abbe_accumulator a = make(1, 1, 1e6);
+    OWNED(abbe_accumulator, a) = make(1, 1, 1e6);
     for (int i = 0; i < PASSES; i++) {
       abbe_accumulator_add(&a, 0, 0, x[way == 0 ? i : way == 1 ? PASSES - 1 - i : 7 * i % PASSES]);
       abbe_accumulator_end_pass(&a);
     }
     sum[way] = a.sum[0];
     memcpy(square[way], a.square, sizeof square[way]);
-    abbe_accumulator_free(&a);
   }
   assert_true(sum[0] == sum[1] && sum[0] == sum[2] && sum[0] != 0);
   assert_memory_equal(square[0], square[1], sizeof square[0]);
@@ -107,7 +105,7 @@ TEST(products_are_exact) {
 TEST(bright_light_takes_no_dim_light_away) {
   enum { PASSES = 8 };
   for (int brightness = 0; brightness <= 60; brightness += 5) {
-    abbe_accumulator a = make(2, 2, ldexp(1, brightness) * 0x1p28);
+    OWNED(abbe_accumulator, a) = make(2, 2, ldexp(1, brightness) * 0x1p28);
     for (int pass = 0; pass < PASSES; pass++) {
       for (int i = 0; i < 1000; i++)
         abbe_accumulator_add(&a, (size_t)(i % 2), 0, (pass % 2 ? 0.9f : 1.1f) * 1e-3f);
@@ -118,7 +116,6 @@ TEST(bright_light_takes_no_dim_light_away) {
     assert_near(abbe_accumulator_mean(&a, 0), 1, slack);
     assert_near(abbe_accumulator_error(&a, 0), 0.1 / sqrt(PASSES - 1), slack);
     assert_near(abbe_accumulator_mean(&a, 1), ldexp(1, brightness), 0);
-    abbe_accumulator_free(&a);
   }
 }
 
@@ -126,20 +123,19 @@ TEST(bright_light_takes_no_dim_light_away) {
 TEST(sums_are_carried) {
   const float x = 0x1.fffffep-38f; /* just below what the coarser unit takes of 1 */
   for (int sign = -1; sign <= 1; sign += 2) {
-    abbe_accumulator a = make(1, 1, 1);
+    OWNED(abbe_accumulator, a) = make(1, 1, 1);
     assert_true((double)x < a.coarse);
     for (int i = 0; i < 5000; i++) abbe_accumulator_add(&a, 0, 0, (float)sign * x);
     assert_true(a.adding[1][0][0] != 0);
     abbe_accumulator_end_pass(&a);
     assert_true(abbe_accumulator_mean(&a, 0) == sign * 5000 * (double)x);
     assert_int_equal(abbe_accumulator_cuts(&a), 0);
-    abbe_accumulator_free(&a);
   }
 }
 
 /* What is far below the range has its standard error too: no bit of a square is dropped. */
 TEST(dim_values_have_an_error) {
-  abbe_accumulator a = make(2, 1, 0x1p93); /* units of 1 */
+  OWNED(abbe_accumulator, a) = make(2, 1, 0x1p93); /* units of 1 */
   for (int pass = 0; pass < 4; pass++) {
     abbe_accumulator_add(&a, 0, 0, pass % 2 ? 300 : 100);
     abbe_accumulator_add(&a, 0, 1, pass % 2 ? -1301 : -1300);
@@ -149,12 +145,11 @@ TEST(dim_values_have_an_error) {
   assert_near(abbe_accumulator_error(&a, 0), 100 / sqrt(3), 1e-9);
   assert_near(abbe_accumulator_mean(&a, 1), -1300.5, 0);
   assert_near(abbe_accumulator_error(&a, 1), 0.5 / sqrt(3), 1e-6);
-  abbe_accumulator_free(&a);
 }
 
 /* Passes of 1, 2, 3, 4: mean 2.5, standard error sqrt(5/3 / 4). */
 TEST(mean_and_standard_error) {
-  abbe_accumulator a = make(2, 2, 1e6);
+  OWNED(abbe_accumulator, a) = make(2, 2, 1e6);
   assert_true(abbe_accumulator_mean(&a, 0) == 0);
   assert_true(isinf(abbe_accumulator_error(&a, 0)));
   for (int pass = 1; pass <= 4; pass++) {
@@ -171,14 +166,13 @@ TEST(mean_and_standard_error) {
   assert_near(abbe_accumulator_mean(&a, 1), -1.5, 1e-9);
   /* the same in every pass: no error, up to the rounding of squares */
   assert_near(abbe_accumulator_error(&a, 1), 0, 1e-7);
-  abbe_accumulator_free(&a);
 }
 
 /* The error of the mean of n normal numbers of variance 1 is 1 / sqrt(n), known itself to a share
  * of 1 / sqrt(2 n); over 400 values to a twentieth of that. */
 TEST(the_error_is_the_spread_of_the_mean) {
   enum { VALUES = 400, PASSES = 50 };
-  abbe_accumulator a = make(VALUES, 1, 1e6);
+  OWNED(abbe_accumulator, a) = make(VALUES, 1, 1e6);
   uint64_t random = 11;
   for (int pass = 0; pass < PASSES; pass++) {
     for (size_t v = 0; v < VALUES; v++)
@@ -192,11 +186,10 @@ TEST(the_error_is_the_spread_of_the_mean) {
   }
   assert_near(told * PASSES, 1, 4 * sqrt(2.0 / PASSES / VALUES));
   assert_near(true_square * PASSES, 1, 4 * sqrt(2.0 / VALUES));
-  abbe_accumulator_free(&a);
 }
 
 TEST(a_dropped_pass_leaves_nothing) {
-  abbe_accumulator a = make(1, 2, 1e6);
+  OWNED(abbe_accumulator, a) = make(1, 2, 1e6);
   abbe_accumulator_add(&a, 0, 0, 1);
   abbe_accumulator_end_pass(&a);
   abbe_accumulator_add(&a, 0, 0, 50);
@@ -207,11 +200,10 @@ TEST(a_dropped_pass_leaves_nothing) {
   assert_int_equal(a.passes, 2);
   assert_near(abbe_accumulator_mean(&a, 0), 2, 1e-12);
   assert_near(abbe_accumulator_error(&a, 0), 1, 1e-9);
-  abbe_accumulator_free(&a);
 }
 
 TEST(what_is_too_large_is_cut_and_counted) {
-  abbe_accumulator a = make(3, 2, 1024);
+  OWNED(abbe_accumulator, a) = make(3, 2, 1024);
   assert_near(a.limit, 1, 0);
   const float awkward[] = {2, -INFINITY, NAN, 1, -1, 1.0000001f};
   for (int i = 0; i < 6; i++)
@@ -221,30 +213,27 @@ TEST(what_is_too_large_is_cut_and_counted) {
   assert_near(abbe_accumulator_mean(&a, 0), 0, 1e-12); /* 1 - 1 */
   assert_near(abbe_accumulator_mean(&a, 1), 1, 1e-12); /* nothing, and 1 whole */
   assert_near(abbe_accumulator_mean(&a, 2), 0, 1e-12);
-  abbe_accumulator_free(&a);
 }
 
 /* More than a pass holds: no overflow, and it is told. */
 TEST(a_sum_that_runs_over_is_told) {
   for (int sign = -1; sign <= 1; sign += 2) {
-    abbe_accumulator a = make(1, 3, 1024);
+    OWNED(abbe_accumulator, a) = make(1, 3, 1024);
     for (int i = 0; i < 30000; i++) abbe_accumulator_add(&a, (size_t)(i % 3), 0, (float)sign);
     abbe_accumulator_end_pass(&a);
     assert_true(abbe_accumulator_cuts(&a) > 0);
     assert_true(sign * abbe_accumulator_mean(&a, 0) >= 1024);
-    abbe_accumulator_free(&a);
   }
 }
 
 /* Numbers of 2^-50 of what a pass holds still count. */
 TEST(small_numbers_are_not_lost) {
-  abbe_accumulator a = make(1, 1, 1);
+  OWNED(abbe_accumulator, a) = make(1, 1, 1);
   for (int i = 0; i < 1000; i++) abbe_accumulator_add(&a, 0, 0, 0x1p-50f);
   abbe_accumulator_add(&a, 0, 0, 0x1p-11f);
   abbe_accumulator_add(&a, 0, 0, -0x1p-11f);
   abbe_accumulator_end_pass(&a);
   assert_near(abbe_accumulator_mean(&a, 0) * 0x1p50, 1000, 1e-9);
-  abbe_accumulator_free(&a);
 }
 
 TEST(what_cannot_be_kept_is_refused) {

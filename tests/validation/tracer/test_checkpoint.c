@@ -10,14 +10,10 @@ static abbe_scene scene;
 
 /* The layout of the map is given, for trying where the light lands takes longer than the rest. */
 static abbe_map_layout layout;
-static const abbe_trace_desc small = {.layout = &layout,
+static const abbe_trace_desc small =
+    FIELDS(.layout = &layout,
 
-                                      .width = 10,
-                                      .height = 7,
-                                      .map_width = 8,
-                                      .photons = 2000,
-                                      .threads = 1,
-                                      .bands = 2};
+           .width = 10, .height = 7, .map_width = 8, .photons = 2000, .threads = 1, .bands = 2);
 
 #define SCENE(more) CAMERA POINT_LIGHT FLOOR BEADS("crown") more
 
@@ -25,14 +21,12 @@ static void setup(void) {
   snprintf(folder, sizeof folder, "/tmp/abbe-test-checkpoint-XXXXXX");
   assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/run.checkpoint", folder);
-  load_text(SCENE(""), &scene);
+  scene = scene_of(SCENE(""));
   abbe_trace_desc fitted = small;
   fitted.layout = NULL;
-  abbe_tracer *tracer = make_tracer(&scene, &fitted);
-  OWNED(abbe_image, map);
-  OK(abbe_tracer_map(tracer, &map, &error));
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &fitted);
+  MADE(abbe_image, map, abbe_tracer_map(tracer, &map, &error));
   OK(abbe_map_layout_read(&map, "map", &layout, &error));
-  abbe_tracer_free(tracer);
 }
 
 static void teardown(void) {
@@ -43,10 +37,9 @@ static void teardown(void) {
 
 /* Saves a run of that many passes. */
 static void save(const abbe_trace_desc *desc, size_t passes) {
-  abbe_tracer *tracer = make_tracer(&scene, desc);
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, desc);
   run_passes(tracer, passes);
   OK(abbe_checkpoint_save(tracer, path, &error));
-  abbe_tracer_free(tracer);
 }
 
 static abbe_result load(abbe_tracer *tracer, abbe_error *error) {
@@ -55,18 +48,15 @@ static abbe_result load(abbe_tracer *tracer, abbe_error *error) {
 }
 
 static void check_same(const abbe_tracer *a, const abbe_tracer *b) {
-  abbe_image x, y;
   assert_int_equal(abbe_tracer_passes(a), abbe_tracer_passes(b));
-  OK(abbe_tracer_picture(a, &x, &error));
-  OK(abbe_tracer_picture(b, &y, &error));
+  MADE(abbe_image, x, abbe_tracer_picture(a, &x, &error));
+  MADE(abbe_image, y, abbe_tracer_picture(b, &y, &error));
   check_same_image(&x, &y);
   abbe_image_free(&x);
   abbe_image_free(&y);
   OK(abbe_tracer_map(a, &x, &error));
   OK(abbe_tracer_map(b, &y, &error));
   check_same_image(&x, &y);
-  abbe_image_free(&x);
-  abbe_image_free(&y);
   abbe_trace_statistics s, t;
   abbe_tracer_statistics(a, &s);
   abbe_tracer_statistics(b, &t);
@@ -83,16 +73,14 @@ TEST(resumed_runs_give_the_image_of_unbroken_ones) {
     abbe_trace_desc desc = small;
     desc.guides = guides;
     save(&desc, 2);
-    abbe_tracer *whole = make_tracer(&scene, &desc);
+    HELD(abbe_tracer, whole) = make_tracer(&scene, &desc);
     run_passes(whole, 5);
     desc.threads = 2;
-    abbe_tracer *broken = make_tracer(&scene, &desc);
+    HELD(abbe_tracer, broken) = make_tracer(&scene, &desc);
     OK(load(broken, &error));
     assert_int_equal(abbe_tracer_passes(broken), 2);
     run_passes(broken, 3);
     check_same(whole, broken);
-    abbe_tracer_free(whole);
-    abbe_tracer_free(broken);
   }
 }
 
@@ -100,28 +88,26 @@ TEST(resumed_runs_give_the_image_of_unbroken_ones) {
 static void check_refused(const abbe_scene *of, const abbe_trace_desc *desc, abbe_result why,
                           const char *part) {
   abbe_error error;
-  abbe_tracer *tracer = make_tracer(of, desc);
+  HELD(abbe_tracer, tracer) = make_tracer(of, desc);
   abbe_result result = load(tracer, &error);
   if (result != why) print_error("%d: %s\n", result, error.text);
   assert_int_equal(result, why);
   assert_contains(error.text, path);
   assert_contains(error.text, part);
   assert_int_equal(abbe_tracer_passes(tracer), 0);
-  abbe_tracer_free(tracer);
 }
 
 TEST(a_refusal_changes_nothing) {
   save(&small, 2);
   abbe_trace_desc other = small;
   other.seed = 9;
-  abbe_tracer *tracer = make_tracer(&scene, &other), *same = make_tracer(&scene, &other);
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &other);
+  HELD(abbe_tracer, same) = make_tracer(&scene, &other);
   run_passes(tracer, 1);
   REFUSED(ABBE_INVALID_ARGUMENT, "", load(tracer, &error));
   run_passes(tracer, 1);
   run_passes(same, 2);
   check_same(tracer, same);
-  abbe_tracer_free(tracer);
-  abbe_tracer_free(same);
 }
 
 TEST(another_request_is_named) {
@@ -139,26 +125,14 @@ TEST(another_request_is_named) {
       {{.width = 10, .height = 7, .map_width = 8, .photons = 2000, .bands = 3}, "bands 3"},
       {{.width = 10, .height = 7, .map_width = 8, .photons = 2000, .bands = 2, .seed = 1},
        "seed 1"},
-      {{.width = 10,
-        .height = 7,
-        .map_width = 8,
-        .photons = 2000,
-        .bands = 2,
-        .physics = {.matched = true, .orders = 4}},
+      {FIELDS(.width = 10, .height = 7, .map_width = 8, .photons = 2000, .bands = 2,
+              .physics = {.matched = true, .orders = 4}),
        "physics matched"},
-      {{.width = 10,
-        .height = 7,
-        .map_width = 8,
-        .photons = 2000,
-        .bands = 2,
-        .space = ABBE_RGB_SPACE_REC709},
+      {FIELDS(.width = 10, .height = 7, .map_width = 8, .photons = 2000, .bands = 2,
+              .space = ABBE_RGB_SPACE_REC709),
        "space rec709"},
-      {{.width = 10,
-        .height = 7,
-        .map_width = 8,
-        .photons = 2000,
-        .bands = 2,
-        .observer = ABBE_OBSERVER_CIE_1964},
+      {FIELDS(.width = 10, .height = 7, .map_width = 8, .photons = 2000, .bands = 2,
+              .observer = ABBE_OBSERVER_CIE_1964),
        "observer 1964"},
       {{.width = 10, .height = 7, .no_map = true, .photons = 2000, .bands = 2}, "map 0 x 0"},
       {{.width = 10, .height = 7, .map_width = 8, .photons = 2000, .bands = 2, .guides = true},
@@ -196,8 +170,7 @@ TEST(another_scene_is_told) {
   static const char *const others[] = {SCENE(HILL), CAMERA POINT_LIGHT FLOOR BEADS("flat"),
                                        CAMERA SUN FLOOR BEADS("crown")};
   for (int i = 0; i < 3; i++) {
-    OWNED(abbe_scene, other);
-    load_text(others[i], &other);
+    OWNED(abbe_scene, other) = scene_of(others[i]);
     check_refused(&other, &small, ABBE_INVALID_ARGUMENT, "another scene");
   }
 }
@@ -205,7 +178,7 @@ TEST(another_scene_is_told) {
 TEST(textures_and_normals_are_part_of_the_scene) {
   static const char *const names[] = {"R", "G", "B"};
   abbe_scene kept = scene;
-  load_text(CAMERA POINT_LIGHT FLOOR RING("crown"), &scene);
+  scene = scene_of(CAMERA POINT_LIGHT FLOOR RING("crown"));
   abbe_object *floor = &scene.object[0], *ring = &scene.object[1];
   OK(abbe_image_make(4, 2, 3, names, &floor->texture, &error));
   floor->texture_repeat[0] = floor->texture_repeat[1] = 1;
@@ -229,10 +202,9 @@ TEST(textures_and_normals_are_part_of_the_scene) {
 /* Which way an optic axis points, a crystal's other index, and how a light's sides lie. */
 TEST(axes_and_edges_are_part_of_the_scene) {
   abbe_scene kept = scene;
-  load_text(CAMERA
-            "lights:\n- {name: panel, kind: rectangle, position: [0, 0, 0.6], direction: [0, "
-            "0, -1], width: 0.02, height: 0.05, radiance: 1}\n" FLOOR BEADS("crown"),
-            &scene);
+  scene =
+      scene_of(CAMERA "lights:\n- {name: panel, kind: rectangle, position: [0, 0, 0.6], direction: "
+                      "[0, 0, -1], width: 0.02, height: 0.05, radiance: 1}\n" FLOOR BEADS("crown"));
   abbe_object *bead = &scene.object[1];
   abbe_dispersion *other = NULL;
   for (size_t i = 0; i < scene.table.count; i++)
@@ -265,7 +237,7 @@ TEST(broken_files_are_told) {
   FREED char *broken = malloc(size + 8);
   assert_non_null(broken);
   abbe_error why;
-  abbe_tracer *tracer = make_tracer(&scene, &small);
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &small);
   /* cut off anywhere, or with something behind it */
   for (size_t i = 0; i <= 40; i++) {
     size_t length = i < 40 ? size * i / 40 : size - 1;
@@ -287,7 +259,6 @@ TEST(broken_files_are_told) {
     assert_contains(why.text, path);
   }
   assert_int_equal(abbe_tracer_passes(tracer), 0);
-  abbe_tracer_free(tracer);
 }
 
 TEST(what_is_no_checkpoint_is_told) {
@@ -300,7 +271,7 @@ TEST(what_is_no_checkpoint_is_told) {
                {"abbe checkpoint 10\nscene 0123", "broken"},
                {"abbe checkpoint 10\n\n\n", "start anew"}};
   abbe_error why;
-  abbe_tracer *tracer = make_tracer(&scene, &small);
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &small);
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
     OK(abbe_file_write(path, files[i].text, strlen(files[i].text), &error));
     assert_true(load(tracer, &why) != ABBE_OK);
@@ -309,7 +280,6 @@ TEST(what_is_no_checkpoint_is_told) {
   unlink(path);
   REFUSED(ABBE_IO, path, load(tracer, &error));
   REFUSED(ABBE_IO, "/nowhere/at/all", abbe_checkpoint_save(tracer, "/nowhere/at/all", &error));
-  abbe_tracer_free(tracer);
 }
 
 /* ---- parts ---- */
@@ -320,11 +290,10 @@ enum { PARTS = 4, ROOM = 96 };
 static void save_part(const abbe_trace_desc *desc, size_t first, size_t end, char file[ROOM],
                       int number) {
   snprintf(file, ROOM, "%s/part-%d.ck", folder, number);
-  abbe_tracer *tracer = make_tracer(&scene, desc);
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, desc);
   OK(abbe_tracer_begin_at(tracer, first, 1, &error));
   run_passes(tracer, end - first);
   OK(abbe_checkpoint_save(tracer, file, &error));
-  abbe_tracer_free(tracer);
 }
 
 /* Any split, put together in any order, is one run to the last bit, guides and ledger too, and goes
@@ -334,7 +303,7 @@ TEST(any_split_gives_the_bits_of_one_run) {
   static const int order[][PARTS] = {{0, 1, 2, 3}, {3, 2, 1, 0}, {2, 0, 3, 1}};
   abbe_trace_desc desc = small;
   desc.guides = true;
-  abbe_tracer *whole = make_tracer(&scene, &desc);
+  HELD(abbe_tracer, whole) = make_tracer(&scene, &desc);
   run_passes(whole, 6);
   for (size_t i = 0; i < sizeof split / sizeof *split; i++) {
     char file[PARTS][ROOM];
@@ -355,19 +324,17 @@ TEST(any_split_gives_the_bits_of_one_run) {
     abbe_tracer_free(merged);
     for (int k = 0; k < PARTS; k++) unlink(file[k]);
   }
-  abbe_tracer_free(whole);
 }
 
 static void check_unmerged(const char *const *paths, size_t count, abbe_result why,
                            const char *part) {
   abbe_error error = {0};
-  abbe_tracer *tracer = make_tracer(&scene, &small);
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &small);
   abbe_result result = abbe_checkpoint_merge(tracer, paths, count, NULL, &error);
   if (result != why) print_error("%d: %s\n", result, error.text);
   assert_int_equal(result, why);
   assert_contains(error.text, part);
   assert_int_equal(abbe_tracer_passes(tracer), 0);
-  abbe_tracer_free(tracer);
 }
 
 TEST(gaps_and_overlaps_are_named) {
@@ -388,26 +355,24 @@ TEST(gaps_and_overlaps_are_named) {
   save_part(&desc, 2, 3, other, 9);
   check_unmerged((const char *[]){file[0], other}, 2, ABBE_INVALID_ARGUMENT, "seed 3");
   /* broken behind its head: found out while parts are added up */
-  char *data = NULL;
+  FREED char *data = NULL;
   size_t size = 0;
   save_part(&small, 2, 3, other, 9);
   OK(abbe_file_read(other, 1 << 24, &data, &size, &error));
   data[size - 20] = (char)(data[size - 20] ^ 1);
   OK(abbe_file_write(other, data, size, &error));
   check_unmerged((const char *[]){file[0], other}, 2, ABBE_PARSE, "damaged");
-  free(data);
   unlink(other);
   for (int k = 0; k < PARTS; k++) unlink(file[k]);
 }
 
 /* The passes first to done - 1, of a whole. */
 static void save_asked(size_t first, size_t done, size_t whole, const char *file) {
-  abbe_tracer *tracer = make_tracer(&scene, &small);
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &small);
   const abbe_trace_run_desc run = {.passes = done - first, .whole = whole, .checkpoint = file};
   abbe_tracer_begin_at(tracer, first, 1, NULL);
   OK(abbe_trace_run(tracer, &run, &error));
   OK(abbe_trace_keep(tracer, &run, &error));
-  abbe_tracer_free(tracer);
 }
 
 /* The last part, and what a part that was killed had not done, are missed as any other; and what is
@@ -443,7 +408,7 @@ TEST(what_was_asked_for_is_missed) {
 }
 
 TEST(a_trace_begins_once) {
-  abbe_tracer *tracer = make_tracer(&scene, &small);
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &small);
   assert_int_equal(abbe_tracer_begin_at(tracer, 1u << 20, 1, NULL), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_tracer_begin_at(tracer, 5, 0, NULL), ABBE_INVALID_ARGUMENT);
   OK(abbe_tracer_begin_at(tracer, 5, 1, &error));
@@ -451,5 +416,4 @@ TEST(a_trace_begins_once) {
   assert_int_equal(abbe_tracer_passes(tracer), 1);
   assert_int_equal(abbe_tracer_first_pass(tracer), 5);
   assert_int_equal(abbe_tracer_begin_at(tracer, 6, 1, NULL), ABBE_INVALID_ARGUMENT);
-  abbe_tracer_free(tracer);
 }

@@ -14,7 +14,7 @@ static void setup(void) {
   snprintf(folder, sizeof folder, "/tmp/abbe-test-forged-XXXXXX");
   assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/run.checkpoint", folder);
-  load_text(CAMERA POINT_LIGHT FLOOR BEADS("crown"), &scene);
+  scene = scene_of(CAMERA POINT_LIGHT FLOOR BEADS("crown"));
 }
 
 static void teardown(void) {
@@ -26,11 +26,10 @@ static void teardown(void) {
 /* The file of a run of that many passes; malloc'd. */
 static char *saved(size_t passes, size_t *size) {
   char *data = NULL;
-  abbe_tracer *tracer = make_tracer(&scene, &small);
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &small);
   run_passes(tracer, passes);
   OK(abbe_checkpoint_save(tracer, path, &error));
   OK(abbe_file_read(path, 1 << 24, &data, size, &error));
-  abbe_tracer_free(tracer);
   return data;
 }
 
@@ -47,7 +46,7 @@ GROUP(setup, teardown);
 /* Sums that no passes have would overflow with the next ones, and such numbers of passes too. */
 TEST(forged_numbers_are_told) {
   abbe_error why = {0};
-  abbe_tracer *tracer = make_tracer(&scene, &small);
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &small);
   size_t size = 0;
   FREED char *data = saved(2, &size);
   write_forged(data, size);
@@ -83,18 +82,16 @@ TEST(forged_numbers_are_told) {
     REFUSED(ABBE_PARSE, "", abbe_checkpoint_load(tracer, path, &error));
     assert_int_equal(abbe_tracer_passes(tracer), 0);
   }
-  abbe_tracer_free(tracer);
 }
 
 /* A file of a processor on which Embree takes other instructions. */
 TEST(other_instructions_are_told) {
-  abbe_tracer *tracer = make_tracer(&scene, &small);
-  char ours[64];
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &small);
   size_t size = 0;
   FREED char *data = saved(1, &size);
   char *const line = strstr(data, "instructions ");
   assert_non_null(line);
-  snprintf(ours, sizeof ours, "%.*s", (int)strcspn(line, "\n"), line);
+  const char *ours = printed("%.*s", (int)strcspn(line, "\n"), line);
   line[strlen("instructions ")] = 'z';
   write_forged(data, size);
   REFUSED(ABBE_INVALID_ARGUMENT, "instructions z", abbe_checkpoint_load(tracer, path, &error));
@@ -102,5 +99,4 @@ TEST(other_instructions_are_told) {
   const char *const paths[] = {path};
   REFUSED(ABBE_INVALID_ARGUMENT, "put parts together",
           abbe_checkpoint_merge(tracer, paths, 1, NULL, &error));
-  abbe_tracer_free(tracer);
 }

@@ -52,7 +52,7 @@ typedef struct fixture {
 } fixture;
 
 static void make_fine(const char *text, radiance_of radiance, size_t width, fixture *f) {
-  load_text(text, &f->scene);
+  f->scene = scene_of(text);
   f->lamps = f->scene.light_count;
   f->scene.light_count = 0;
   f->scene.environment = surround(radiance, width);
@@ -70,7 +70,7 @@ static void trace(fixture *f, size_t photons, size_t passes, abbe_image *picture
   OK(abbe_tracer_picture(f->tracer, picture, &error));
 }
 
-static void drop(fixture *f) {
+static void fixture_free(fixture *f) {
   abbe_tracer_free(f->tracer);
   f->scene.light_count = f->lamps;
   abbe_scene_free(&f->scene);
@@ -98,36 +98,31 @@ TEST(a_convex_body_meets_pi_times_its_surface) {
                 "[1, 1, 0], angle: 20}}, {translate: [0, 0, 0.4]}], material: crown}\n",
                 2 * (0.2 * 0.05 + 0.2 * 0.1 + 0.05 * 0.1)}};
   for (size_t i = 0; i < 2; i++) {
-    char text[2048];
-    fixture f;
-    OWNED(abbe_image, picture);
-    snprintf(text, sizeof text, CAMERA POINT_LIGHT FAR_SPECK "%s", cases[i].body);
-    make(text, uniform, &f);
-    trace(&f, 1 << 14, 32, &picture);
+    FILLED(fixture, f,
+           make(printed(CAMERA POINT_LIGHT FAR_SPECK "%s", cases[i].body), uniform, &f));
+    FILLED(abbe_image, picture, trace(&f, 1 << 14, 32, &picture));
     abbe_trace_statistics s;
     abbe_tracer_statistics(f.tracer, &s);
     assert_near(s.ledger.reached / (ABBE_PI * 2 * cases[i].surface), 1, 2e-3);
-    drop(&f);
   }
 }
 
 /* A photon goes to a body by its share of all their area, however small that is. */
 TEST(photons_find_a_grain_beside_a_boulder) {
   static const double radius = 1e-4;
-  fixture f = {0};
+  OWNED(fixture, f) = {0};
   make(CAMERA POINT_LIGHT FAR_SPECK "- {name: boulder, shape: sphere, radius: 1, mirror: 1}\n"
                                     "- {name: grain, shape: sphere, radius: 1e-4, mirror: 1, "
                                     "transform: [{translate: [3, 0, 0]}]}\n",
        uniform, &f);
   const abbe_spectral_sampling_desc spectrum = {.min_nm = 380, .max_nm = 780, .uniform = 0.15};
   const abbe_bands none = {0};
-  abbe_geometry geometry;
-  abbe_spectral_sampling sampling;
-  abbe_environment_light light;
-  OK(abbe_geometry_make(&f.scene, &geometry, &error));
-  OK(abbe_spectral_sampling_make(&f.scene, &spectrum, &sampling, &error));
-  OK(abbe_environment_light_make(&geometry, &sampling, &none, ABBE_RGB_SPACE_ACESCG, &light,
-                                 &error));
+  MADE(abbe_geometry, geometry, abbe_geometry_make(&f.scene, &geometry, &error));
+  MADE(abbe_spectral_sampling, sampling,
+       abbe_spectral_sampling_make(&f.scene, &spectrum, &sampling, &error));
+  MADE(abbe_environment_light, light,
+       abbe_environment_light_make(&geometry, &sampling, &none, ABBE_RGB_SPACE_ACESCG, &light,
+                                   &error));
   const double grain[3] = {3, 0, 0}, share = radius * radius / (1 + radius * radius);
   float centre[3];
   abbe_geometry_to_frame(&geometry, grain, centre);
@@ -139,42 +134,34 @@ TEST(photons_find_a_grain_beside_a_boulder) {
     for (int k = 0; k < 3; k++) off += powf(centre[k] - o[k] - along * d[k], 2);
     assert_true((sqrtf(off) * (float)geometry.unit < 1.1e-4f) == (u[3] >= 1 - share));
   }
-  abbe_environment_light_free(&light);
-  abbe_spectral_sampling_free(&sampling);
-  abbe_geometry_free(&geometry);
-  drop(&f);
 }
 
 /* Through clear glass every ray ends in the same light: no pixel shows the glass. */
 TEST(clear_glass_is_not_seen_in_uniform_light) {
-  fixture f;
-  OWNED(abbe_image, picture);
+  OWNED(fixture, f) = {0};
   make(CAMERA POINT_LIGHT FAR_SPECK "- {name: stone, shape: brilliant, diameter: 0.3, transform: "
                                     "[{translate: [0, 0, 0.2]}], material: crown}\n",
        uniform, &f);
-  trace(&f, 1024, 8, &picture);
+  FILLED(abbe_image, picture, trace(&f, 1024, 8, &picture));
   double sum = 0;
   for (size_t y = 0; y < 48; y++)
     for (size_t x = 0; x < 48; x++) sum += luminance(&picture, x, y);
   assert_near(sum / (48 * 48) / 2, 1, 2e-3);
   /* where only sky shows it is exact */
   assert_near(luminance(&picture, 1, 1), 2, 1e-3);
-  drop(&f);
 }
 
 /* What it covers alone is in a transparent picture, and what is behind it through it. */
 TEST(a_transparent_picture_is_premultiplied) {
-  fixture f;
-  OWNED(abbe_image, picture);
-  OWNED(abbe_image, alpha);
+  OWNED(fixture, f) = {0};
   make("materials: glass.yaml\ncamera: {frame: [stone], fov: 30}\n" POINT_LIGHT "objects:\n"
        "- {name: grain, shape: rectangle, width: 0.01, height: 0.01, reflectance: 0.5,\n"
        "   centre: [0, 2.5, -4.33]}\n"
        "- {name: stone, shape: brilliant, diameter: 0.3, material: crown}\n",
        uniform, &f);
   f.scene.transparent = true;
-  trace(&f, 1024, 16, &picture);
-  OK(abbe_coverage_make(&f.scene, 48, 48, 8, &alpha, &error));
+  FILLED(abbe_image, picture, trace(&f, 1024, 16, &picture));
+  MADE(abbe_image, alpha, abbe_coverage_make(&f.scene, 48, 48, 8, &alpha, &error));
   double sum = 0, covered = 0;
   for (size_t y = 0; y < 48; y++)
     for (size_t x = 0; x < 48; x++) {
@@ -185,32 +172,26 @@ TEST(a_transparent_picture_is_premultiplied) {
   assert_near(luminance(&picture, 1, 1), 0, 0);
   assert_true(covered > 100);
   assert_near(sum / covered / 2, 1, 1e-2);
-  drop(&f);
 }
 
 TEST(a_whole_mirror_is_not_seen_in_uniform_light) {
-  fixture f;
-  OWNED(abbe_image, picture);
+  OWNED(fixture, f) = {0};
   make(CAMERA POINT_LIGHT FAR_SPECK
        "- {name: ring, shape: ring, major: 0.15, minor: 0.05, around: 32, across: 16, transform: "
        "[{translate: [0, 0, 0.1]}], mirror: 1}\n",
        uniform, &f);
-  trace(&f, 1024, 4, &picture);
+  FILLED(abbe_image, picture, trace(&f, 1024, 4, &picture));
   for (size_t y = 0; y < 48; y++)
     for (size_t x = 0; x < 48; x++) assert_near(luminance(&picture, x, y), 2, 2e-3);
-  drop(&f);
 }
 
 static void check_floor(radiance_of radiance, double irradiance) {
-  fixture f;
-  OWNED(abbe_image, picture);
-  make(CAMERA POINT_LIGHT FLOOR, radiance, &f);
-  trace(&f, 1024, 16, &picture);
+  FILLED(fixture, f, make(CAMERA POINT_LIGHT FLOOR, radiance, &f));
+  FILLED(abbe_image, picture, trace(&f, 1024, 16, &picture));
   double sum = 0;
   for (size_t y = 24; y < 48; y++)
     for (size_t x = 0; x < 48; x++) sum += luminance(&picture, x, y) / (24 * 48);
   assert_near(sum / (0.5 * irradiance / ABBE_PI), 1, 5e-3);
-  drop(&f);
 }
 
 TEST(an_open_floor_has_its_irradiance) {
@@ -225,20 +206,17 @@ TEST(light_does_not_depend_on_how_many_texels_there_are) {
   enum { PASSES = 64 };
   static const size_t widths[] = {64, 1024, 2048};
   for (size_t w = 0; w < (SANITIZED ? 2 : 3); w++) {
-    fixture f;
     double sum = 0, square = 0, before = 0;
-    make_fine(CAMERA POINT_LIGHT FLOOR, uniform, widths[w], &f);
+    FILLED(fixture, f, make_fine(CAMERA POINT_LIGHT FLOOR, uniform, widths[w], &f));
     const abbe_trace_desc desc = {
         .no_map = true, .width = 48, .height = 48, .photons = 256, .threads = 2};
     f.tracer = make_tracer(&f.scene, &desc);
     for (size_t p = 1; p <= PASSES; p++) {
-      abbe_image picture;
       double so_far = 0;
       run_passes(f.tracer, 1);
-      assert_int_equal(abbe_tracer_picture(f.tracer, &picture, NULL), ABBE_OK);
+      MADE(abbe_image, picture, abbe_tracer_picture(f.tracer, &picture, &error));
       for (size_t y = 24; y < 48; y++)
         for (size_t x = 0; x < 48; x++) so_far += luminance(&picture, x, y) / (24 * 48);
-      abbe_image_free(&picture);
       const double one = (double)p * so_far - before;
       before = (double)p * so_far;
       sum += one / PASSES;
@@ -248,7 +226,6 @@ TEST(light_does_not_depend_on_how_many_texels_there_are) {
     print_message("%zu texels: %.5f of the light, standard error %.5f\n", widths[w], sum, error);
     assert_true(error < 1e-3);
     assert_near(sum, 1, 4 * error + 1e-4);
-    drop(&f);
   }
 }
 
@@ -261,35 +238,31 @@ static double from_below(const double d[3]) {
 /* A floor in ambient light above a light that reaches no pixel, however bright that is. */
 TEST(what_is_not_seen_takes_nothing_away) {
   for (int power = 0; power <= 12; power += 3) {
-    fixture f;
-    OWNED(abbe_image, picture);
+    OWNED(fixture, f) = {0};
     beam = pow(10, power);
     make_fine("materials: glass.yaml\nambient: 0.15\ncamera: {eye: [0, 0, 1], target: [0, 0, 0], "
               "up: [0, 1, 0], fov: 20}\n" POINT_LIGHT FLOOR,
               from_below, 64, &f);
-    trace(&f, 256, 2, &picture);
+    FILLED(abbe_image, picture, trace(&f, 256, 2, &picture));
     for (size_t x = 0; x < 48; x++) {
       assert_near(luminance(&picture, x, 20), 0.15 * 0.5 / ABBE_PI, 1e-6);
       assert_near(channel(&picture, "stderr.G", x, 20), 0, 1e-6);
     }
-    drop(&f);
   }
 }
 
 /* What no sums can hold together is told. */
 TEST(lights_too_far_apart_are_told) {
-  fixture f;
-  OWNED(abbe_image, picture);
+  OWNED(fixture, f) = {0};
   abbe_trace_statistics s;
   beam = 1e12;
   make_fine("materials: glass.yaml\nambient: 1e-9\ncamera: {eye: [0, 0, 1], target: [0, 0, 0], up: "
             "[0, 1, 0]}\n" POINT_LIGHT FLOOR,
             from_below, 64, &f);
-  trace(&f, 256, 1, &picture);
+  FILLED(abbe_image, picture, trace(&f, 256, 1, &picture));
   abbe_tracer_statistics(f.tracer, &s);
   assert_true(s.faintest < ABBE_TRACER_FAINTEST);
   assert_near(s.faintest * f.scene.environment->luminance / 1e-9, 1, 1e-12);
-  drop(&f);
 }
 
 /* A stone over a black table is seen, and no photon is followed for it; few are where a table lies
@@ -302,18 +275,15 @@ TEST(photons_are_for_what_shows_them) {
                {"0.5", "0, 40, -18", 1, 100000},
                {"0.001", "0, 0, 0", 999990, 1000000}};
   for (size_t i = 0; i < 3; i++) {
-    char text[2048];
-    fixture f;
-    OWNED(abbe_image, picture);
-    snprintf(text, sizeof text,
-             CAMERA POINT_LIGHT
-             "objects:\n- {name: stone, shape: brilliant, diameter: 0.3, "
-             "transform: [{translate: [0, 0, 0.2]}], material: crown}\n"
-             "- {name: table, shape: rectangle, width: 1, height: 1, reflectance: "
-             "%s, transform: [{translate: [%s]}]}\n",
-             cases[i].reflectance, cases[i].place);
-    make(text, uniform, &f);
-    trace(&f, 500000, 2, &picture);
+    FILLED(fixture, f,
+           make(printed(CAMERA POINT_LIGHT
+                        "objects:\n- {name: stone, shape: brilliant, diameter: 0.3, "
+                        "transform: [{translate: [0, 0, 0.2]}], material: crown}\n"
+                        "- {name: table, shape: rectangle, width: 1, height: 1, "
+                        "reflectance: %s, transform: [{translate: [%s]}]}\n",
+                        cases[i].reflectance, cases[i].place),
+                uniform, &f));
+    FILLED(abbe_image, picture, trace(&f, 500000, 2, &picture));
     abbe_trace_statistics s;
     abbe_tracer_statistics(f.tracer, &s);
     print_message("%llu photons of 1000000\n", (unsigned long long)s.photons);
@@ -324,14 +294,12 @@ TEST(photons_are_for_what_shows_them) {
         for (size_t x = 0; x < 48; x++) sum += luminance(&picture, x, y) / (48 * 48);
       assert_near(sum, 2, 5e-3);
     }
-    drop(&f);
   }
 }
 
 /* What a clear ball takes from the speck below it, it brings back: as much light falls on it. */
 TEST(a_clear_ball_takes_nothing_away) {
-  fixture f;
-  OWNED(abbe_image, picture);
+  OWNED(fixture, f) = {0};
   make(CAMERA POINT_LIGHT SPECK "- {name: ball, shape: sphere, radius: 0.08, levels: 2, transform: "
                                 "[{translate: [0, 0, 0.1]}], material: crown}\n",
        uniform, &f);
@@ -339,7 +307,7 @@ TEST(a_clear_ball_takes_nothing_away) {
   memcpy(f.scene.camera.eye, eye, sizeof eye);
   memcpy(f.scene.camera.target, target, sizeof target);
   f.scene.camera.fov_y_rad = 3.0 * ABBE_PI / 180;
-  trace(&f, 1 << 19, 8, &picture);
+  FILLED(abbe_image, picture, trace(&f, 1 << 19, 8, &picture));
   double sum = 0, caustic = 0;
   for (size_t y = 22; y < 26; y++)
     for (size_t x = 12; x < 36; x++) {
@@ -348,7 +316,6 @@ TEST(a_clear_ball_takes_nothing_away) {
     }
   assert_true(caustic > 0.3); /* of 1 */
   assert_near(sum, 1, 1.5e-2);
-  drop(&f);
 }
 
 static double turned(const double d[3]) { /* half_sky, by 90 degrees about z */
@@ -361,18 +328,18 @@ static double doubled(const double d[3]) {
 
 static void draw_stone(const char *angle, const double eye[3], radiance_of radiance,
                        abbe_image *out) {
-  char text[2048];
-  fixture f;
-  snprintf(text, sizeof text,
-           CAMERA POINT_LIGHT FLOOR "- {name: stone, shape: brilliant, diameter: 0.3, transform: "
-                                    "[{rotate: {axis: [0, 0, 1], angle: %s}}, {translate: [0, 0, "
-                                    "0.2]}], material: crown}\n",
-           angle);
-  make(text, radiance, &f);
+  FILLED(
+      fixture, f,
+      make(
+          printed(
+              CAMERA POINT_LIGHT FLOOR
+              "- {name: stone, shape: brilliant, diameter: 0.3, transform: [{rotate: {axis: [0, 0, "
+              "1], angle: %s}}, {translate: [0, 0, 0.2]}], material: crown}\n",
+              angle),
+          radiance, &f));
   memcpy(f.scene.camera.eye, eye, 3 * sizeof *eye);
   f.scene.camera.target[0] = f.scene.camera.target[1] = 0;
   trace(&f, 4096, SANITIZED ? 6 : 24, out);
-  drop(&f);
 }
 
 /* Squares of the differences, over what the standard errors of both say. */
@@ -390,7 +357,7 @@ static double chi_square(const abbe_image *a, const abbe_image *b, double factor
 
 TEST(turning_all_changes_nothing) {
   static const double eye[3] = {0.2, -1, 0.5}, eye_turned[3] = {1, 0.2, 0.5};
-  abbe_image here, there, left;
+  OWNED(abbe_image, here) = {0}, there = {0}, left = {0};
   draw_stone("0", eye, half_sky, &here);
   draw_stone("90", eye_turned, turned, &there);
   draw_stone("90", eye_turned, half_sky, &left);
@@ -398,18 +365,13 @@ TEST(turning_all_changes_nothing) {
                 chi_square(&here, &there, 1), chi_square(&here, &left, 1));
   assert_true(chi_square(&here, &there, 1) < 1.5);
   assert_true(chi_square(&here, &left, 1) > 5);
-  abbe_image_free(&here);
-  abbe_image_free(&there);
-  abbe_image_free(&left);
 }
 
 /* The same paths, of twice the light. */
 TEST(light_is_linear) {
   static const double eye[3] = {0.2, -1, 0.5};
-  OWNED(abbe_image, once);
-  OWNED(abbe_image, twice);
-  draw_stone("0", eye, half_sky, &once);
-  draw_stone("0", eye, doubled, &twice);
+  FILLED(abbe_image, once, draw_stone("0", eye, half_sky, &once));
+  FILLED(abbe_image, twice, draw_stone("0", eye, doubled, &twice));
   for (size_t y = 0; y < 48; y++)
     for (size_t x = 0; x < 48; x++)
       assert_near(channel(&twice, "G", x, y), 2 * channel(&once, "G", x, y),
@@ -421,11 +383,10 @@ TEST(the_ledger_closes) {
   static const char *const names[] = {"metal-ring", "metal-ball",   "spoon",         "metals",
                                       "octahedra",  "glass-studio", "diamond-studio"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i += SANITIZED ? 3 : 1) {
-    OWNED(abbe_scene, scene);
-    load_shipped(names[i], &scene);
+    OWNED(abbe_scene, scene) = shipped_scene(names[i]);
     const abbe_trace_desc desc = {
         .no_map = true, .width = 4, .height = 4, .photons = 30000, .threads = 2};
-    abbe_tracer *tracer = make_tracer(&scene, &desc);
+    HELD(abbe_tracer, tracer) = make_tracer(&scene, &desc);
     run_passes(tracer, 1);
     abbe_trace_statistics s;
     abbe_tracer_statistics(tracer, &s);
@@ -436,6 +397,5 @@ TEST(the_ledger_closes) {
     assert_true(l->reached > 0);
     assert_near(all / l->reached, 1, 1e-4);
     assert_true(l->lost < 1e-4 * l->reached);
-    abbe_tracer_free(tracer);
   }
 }

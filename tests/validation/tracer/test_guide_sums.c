@@ -16,16 +16,15 @@ typedef struct traced {
 } traced;
 
 static traced trace(const abbe_scene *scene, const abbe_trace_desc *desc, size_t passes) {
-  abbe_tracer *tracer = make_tracer(scene, desc);
+  HELD(abbe_tracer, tracer) = make_tracer(scene, desc);
   run_passes(tracer, passes);
   traced r;
   OK(abbe_tracer_picture(tracer, &r.picture, &error));
   OK(abbe_tracer_map(tracer, &r.map, &error));
-  abbe_tracer_free(tracer);
   return r;
 }
 
-static void drop(traced *r) {
+static void traced_free(traced *r) {
   abbe_image_free(&r->picture);
   abbe_image_free(&r->map);
 }
@@ -33,14 +32,13 @@ static void drop(traced *r) {
 /* Photons and the eye's light make the picture, their variances those of the caustic and the rest
  * where no glass is seen; a floor's guides are the floor's. Nothing else changes by them. */
 TEST(guides_are_of_the_picture) {
-  OWNED(abbe_scene, scene);
-  load_text("materials: glass.yaml\ncamera: {eye: [0, -0.5, 0.35], target: [0, 0, 0.05], fov: "
-            "50}\n" POINT_LIGHT FLOOR BEADS("crown"),
-            &scene);
+  OWNED(abbe_scene, scene) =
+      scene_of("materials: glass.yaml\ncamera: {eye: [0, -0.5, 0.35], target: [0, 0, 0.05], fov: "
+               "50}\n" POINT_LIGHT FLOOR BEADS("crown"));
   abbe_trace_desc desc = small;
-  traced plain = trace(&scene, &desc, 4);
+  OWNED(traced, plain) = trace(&scene, &desc, 4);
   desc.guides = true;
-  traced with = trace(&scene, &desc, 4);
+  OWNED(traced, with) = trace(&scene, &desc, 4);
   static const char *const names[3] = {"R", "G", "B"};
   static const char *const photons[3] = {"photons.R", "photons.G", "photons.B"};
   static const char *const eye[3] = {"eye.R", "eye.G", "eye.B"};
@@ -68,18 +66,14 @@ TEST(guides_are_of_the_picture) {
   assert_near((double)*layer(&with.picture, "stderr.normal.Z", corner), 0, 1e-6);
   assert_near((double)*layer(&with.picture, "albedo.R", corner), 0.5, 1e-4);
   assert_near((double)*layer(&with.picture, "depth.Z", corner), 0.42, 0.1);
-  drop(&plain);
-  drop(&with);
 }
 
 /* Variances and covariances of the mean of three passes, by hand. */
 TEST(sums_tell_covariances) {
   static const float rgb[3][3] = {{5, 1, 2}, {3, 2, 4}, {4, 6, 0}},
                      eye[3][3] = {{1, 1, 1}, {1, 1, 2}, {1, 4, 0}};
-  OWNED(abbe_accumulator, picture);
-  abbe_guide_sums g;
-  OK(abbe_accumulator_make(3, 2, 1e6, &picture, &error));
-  OK(abbe_guide_sums_make(1, picture.unit, &g, &error));
+  MADE(abbe_accumulator, picture, abbe_accumulator_make(3, 2, 1e6, &picture, &error));
+  MADE(abbe_guide_sums, g, abbe_guide_sums_make(1, picture.unit, &g, &error));
   for (size_t pass = 0; pass < 3; pass++) {
     const abbe_eye_sample sample = {.depth = (float)pass, .albedo = {NAN, 1, 0}};
     for (size_t k = 0; k < 3; k++) abbe_accumulator_add(&picture, k % 2, k, rgb[pass][k]);
@@ -98,5 +92,4 @@ TEST(sums_tell_covariances) {
   assert_near(abbe_guide_sums_covariance(&g, 3, 0, 1), -1 * unit, 1e-6); /* RB */
   assert_near(abbe_guide_sums_covariance(&g, 3, 0, 2), -1 * unit, 1e-6); /* GB */
   assert_near(abbe_guide_sums_covariance(&g, 3, 0, 5), -3 * unit, 1e-6); /* the eye's GB */
-  abbe_guide_sums_free(&g);
 }

@@ -129,7 +129,7 @@ TEST(any_number_of_ranks_gives_the_bits_of_one) {
   for (size_t i = 0; i < sizeof passes / sizeof *passes; i++) {
     abbe_trace_desc desc = small;
     desc.guides = i == 1;
-    abbe_tracer *whole = whole_run(&desc, passes[i]);
+    HELD(abbe_tracer, whole) = whole_run(&desc, passes[i]);
     for (size_t ranks = 1; ranks <= MOST_RANKS; ranks++) {
       job j[MOST_RANKS];
       for (size_t r = 0; r < ranks; r++) {
@@ -142,13 +142,12 @@ TEST(any_number_of_ranks_gives_the_bits_of_one) {
       check_same(whole, j[0].tracer);
       finish(j, ranks);
     }
-    abbe_tracer_free(whole);
   }
 }
 
 /* The error is looked at after as many passes, however many ranks there are. */
 TEST(an_error_ends_all_at_the_same_pass) {
-  abbe_tracer *whole = whole_run(&small, 10);
+  HELD(abbe_tracer, whole) = whole_run(&small, 10);
   const double target = abbe_tracer_error(whole) * 1.0001;
   size_t done = 0;
   for (size_t ranks = 1; ranks <= MOST_RANKS; ranks++) {
@@ -169,7 +168,6 @@ TEST(an_error_ends_all_at_the_same_pass) {
     abbe_tracer_free(same);
     finish(j, ranks);
   }
-  abbe_tracer_free(whole);
 }
 
 TEST(time_ends_all_with_passes_from_0_on) {
@@ -193,7 +191,7 @@ TEST(time_ends_all_with_passes_from_0_on) {
  * file from the beginning. */
 TEST(ranks_that_were_stopped_go_on) {
   enum { RANKS = 3, PASSES = 8 };
-  abbe_tracer *whole = whole_run(&small, PASSES);
+  HELD(abbe_tracer, whole) = whole_run(&small, PASSES);
   for (int lost = 0; lost < 2; lost++) {
     for (int again = 0; again < 2; again++) {
       job j[RANKS];
@@ -218,11 +216,10 @@ TEST(ranks_that_were_stopped_go_on) {
     char file[RANKS][96];
     for (size_t r = 0; r < RANKS; r++) {
       snprintf(file[r], sizeof file[r], "%s/rank-%zu.ck", folder, r);
-      abbe_tracer *t = make_tracer(&scene, &small);
+      HELD(abbe_tracer, t) = make_tracer(&scene, &small);
       OK(abbe_tracer_begin_at(t, r, RANKS, &error));
       run_passes(t, r < 2 ? 3 : 2);
       OK(abbe_checkpoint_save(t, file[r], &error));
-      abbe_tracer_free(t);
     }
     abbe_tracer *merged = make_tracer(&scene, &small);
     const char *const paths[] = {file[2], file[0], file[1]};
@@ -233,7 +230,6 @@ TEST(ranks_that_were_stopped_go_on) {
     abbe_tracer_free(merged);
     for (size_t r = 0; r < RANKS; r++) unlink(file[r]);
   }
-  abbe_tracer_free(whole);
 }
 
 TEST(ranks_that_differ_are_refused) {
@@ -278,7 +274,7 @@ TEST(looks_are_a_quarter_apart_at_the_most) {
 
 static void setup(void) {
   snprintf(folder, sizeof folder, "/tmp/abbe-test-ranks-XXXXXX");
-  load_text(CAMERA POINT_LIGHT FLOOR BEADS("crown"), &scene);
+  scene = scene_of(CAMERA POINT_LIGHT FLOOR BEADS("crown"));
   assert_non_null(mkdtemp(folder));
 }
 

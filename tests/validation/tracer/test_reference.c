@@ -21,12 +21,11 @@ static void assert_same(const abbe_image *a, const abbe_image *b) {
 
 TEST(stopped_and_taken_up_is_the_same) {
   char folder[] = "/tmp/abbe-test-reference-XXXXXX", path[64];
-  OWNED(abbe_scene, scene) = {0};
   abbe_image whole[2], parts[2];
   int calls = 0;
   assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/checkpoint", folder);
-  load_text(SCENE, &scene);
+  OWNED(abbe_scene, scene) = scene_of(SCENE);
   abbe_reference_desc desc = {.trace = small, .passes = 6};
   OK(abbe_reference_trace(&scene, &desc, &whole[0], &whole[1], &error));
   desc.checkpoint = path;
@@ -50,12 +49,11 @@ TEST(stopped_and_taken_up_is_the_same) {
 
 TEST(a_checkpoint_of_another_request_is_refused) {
   char folder[] = "/tmp/abbe-test-reference-XXXXXX", path[64];
-  OWNED(abbe_scene, scene) = {0};
   abbe_image picture, map;
   int calls = 0;
   assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/checkpoint", folder);
-  load_text(SCENE, &scene);
+  OWNED(abbe_scene, scene) = scene_of(SCENE);
   abbe_reference_desc desc = {
       .trace = small, .passes = 6, .checkpoint = path, .progress = stop_midway, .user = &calls};
   REFUSED(ABBE_CANCELLED, "", abbe_reference_trace(&scene, &desc, &picture, &map, &error));
@@ -67,13 +65,11 @@ TEST(a_checkpoint_of_another_request_is_refused) {
 }
 
 TEST(a_part_that_is_left_out) {
-  OWNED(abbe_scene, scene) = {0};
-  abbe_image picture, map;
-  load_text(SCENE, &scene);
+  abbe_image picture;
+  OWNED(abbe_scene, scene) = scene_of(SCENE);
   abbe_reference_desc desc = {.trace = small, .passes = 2};
   desc.trace.no_picture = true;
-  OK(abbe_reference_trace(&scene, &desc, &picture, &map, &error));
+  MADE(abbe_image, map, abbe_reference_trace(&scene, &desc, &picture, &map, &error));
   assert_null(picture.data);
   assert_int_equal(map.width, 16);
-  abbe_image_free(&map);
 }

@@ -18,18 +18,11 @@ static const char SCENE[] =
     "- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.8}\n";
 
 static void trace(const char *illuminant, size_t bands, abbe_image *out) {
-  char text[1200];
-  OWNED(abbe_scene, scene);
   abbe_tracer *tracer = NULL;
-  snprintf(text, sizeof text, SCENE, illuminant);
-  load_text(text, &scene);
-  const abbe_trace_desc desc = {.width = SIDE,
-                                .height = SIDE,
-                                .bands = bands,
-                                .space = ABBE_RGB_SPACE_XYZ,
-                                .photons = 1 << 15,
-                                .no_map = true,
-                                .threads = 2};
+  OWNED(abbe_scene, scene) = scene_of(printed(SCENE, illuminant));
+  const abbe_trace_desc desc =
+      FIELDS(.width = SIDE, .height = SIDE, .bands = bands, .space = ABBE_RGB_SPACE_XYZ,
+             .photons = 1 << 15, .no_map = true, .threads = 2);
   OK(abbe_tracer_make(&scene, &desc, &tracer, &error));
   for (int i = 0; i < PASSES; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
   OK(abbe_tracer_picture(tracer, out, &error));
@@ -54,12 +47,12 @@ static void sums(const abbe_image *image, double xyz[3], double error[3]) {
 
 TEST(a_trace_under_another_lamp) {
   const abbe_illuminant d65 = {0}, a = {.kind = ABBE_ILLUMINANT_A};
-  abbe_image made, under_a, relit;
+  OWNED(abbe_image, made) = {0}, under_a = {0};
   double expected[3], found[3], own[3], none[3];
   trace("D65", 40, &made);
   trace("A", 0, &under_a);
   const abbe_relight_desc desc = {.view = {.from = &d65, .to = &a}, .space = ABBE_RGB_SPACE_XYZ};
-  OK(abbe_relight_make(&made, "it", &desc, &relit, &error));
+  MADE(abbe_image, relit, abbe_relight_make(&made, "it", &desc, &relit, &error));
   sums(&under_a, expected, own);
   sums(&relit, found, none);
   for (int k = 0; k < 3; k++) {
@@ -68,7 +61,4 @@ TEST(a_trace_under_another_lamp) {
     /* the two traces are independent, and both are as far off as the one says */
     assert_near(found[k], expected[k], 5 * own[k] + 2e-3 * expected[k]);
   }
-  abbe_image_free(&relit);
-  abbe_image_free(&under_a);
-  abbe_image_free(&made);
 }

@@ -24,9 +24,8 @@ static bool look(void *user, double done) {
 }
 
 TEST(what_ends_a_run) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(SCENE, &scene);
-  abbe_tracer *t = make_tracer(&scene, &small);
+  OWNED(abbe_scene, scene) = scene_of(SCENE);
+  HELD(abbe_tracer, t) = make_tracer(&scene, &small);
   watch w = {.left = 2};
   abbe_trace_run_desc run = {.passes = 5, .checkpoint_s = 1e9, .progress = look, .user = &w};
   REFUSED(ABBE_CANCELLED, "stopped after 2 of 5 passes", abbe_trace_run(t, &run, &error));
@@ -46,15 +45,14 @@ TEST(what_ends_a_run) {
   run = (abbe_trace_run_desc){.error = 1e9, .checkpoint_s = 1e9};
   OK(abbe_trace_run(t, &run, &error));
   assert_int_equal(abbe_tracer_passes(t), 4);
-  abbe_tracer_free(t);
 }
 
 TEST(checkpoints) {
-  OWNED(abbe_scene, scene) = {0};
   char path[64];
   snprintf(path, sizeof path, "/tmp/abbe_test_trace_run_%ld", (long)getpid());
-  load_text(SCENE, &scene);
-  abbe_tracer *t = make_tracer(&scene, &small), *again = make_tracer(&scene, &small);
+  OWNED(abbe_scene, scene) = scene_of(SCENE);
+  HELD(abbe_tracer, t) = make_tracer(&scene, &small);
+  HELD(abbe_tracer, again) = make_tracer(&scene, &small);
   abbe_trace_run_desc run = {.passes = 2, .checkpoint = path};
   OK(abbe_trace_keep(t, &run, &error)); /* no pass: nothing to keep */
   assert_int_equal(access(path, F_OK), -1);
@@ -65,8 +63,6 @@ TEST(checkpoints) {
   run.checkpoint = "/no/such/folder/c";
   run.passes = 3;
   REFUSED(ABBE_IO, "", abbe_trace_run(t, &run, &error));
-  abbe_tracer_free(t);
-  abbe_tracer_free(again);
 }
 
 /* Whoever asks for an end has it before another ray is traced, whatever is being made. */
@@ -74,11 +70,9 @@ TEST(an_end_is_heard_everywhere) {
   volatile int stop = 0;
   abbe_trace_desc desc = small;
   OWNED(abbe_image, image);
-  abbe_tracer *tracer = NULL;
-  OWNED(abbe_scene, scene);
-  load_text(SCENE, &scene);
+  OWNED(abbe_scene, scene) = scene_of(SCENE);
   desc.stop = &stop;
-  tracer = make_tracer(&scene, &desc);
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &desc);
   run_passes(tracer, 2);
   stop = 1;
   const uint64_t walked = abbe_tracer_walk_rays(tracer);
@@ -92,5 +86,4 @@ TEST(an_end_is_heard_everywhere) {
   assert_null(other);
   stop = 0;
   OK(abbe_tracer_picture(tracer, &image, &error));
-  abbe_tracer_free(tracer);
 }

@@ -18,7 +18,7 @@ static abbe_spectral_sampling sampling_over(double min_nm, double max_nm, size_t
 }
 
 static void setup(void) {
-  load_text(CAMERA TWO_LIGHTS FLOOR, &scene);
+  scene = scene_of(CAMERA TWO_LIGHTS FLOOR);
 }
 
 static void teardown(void) {
@@ -29,10 +29,9 @@ GROUP(setup, teardown);
 
 /* "S0.550,000000nm": a stokes component, a wavelength with a comma, its unit [Fichet2021]. */
 TEST(names_are_as_the_layout_has_them) {
-  abbe_spectral_sampling s = sampling_over(380, 780, 40);
-  abbe_bands b;
+  OWNED(abbe_spectral_sampling, s) = sampling_over(380, 780, 40);
   char name[64];
-  OK(abbe_bands_make(&s, 40, &b, &error));
+  MADE(abbe_bands, b, abbe_bands_make(&s, 40, &b, &error));
   abbe_bands_name(&b, 0, name, sizeof name);
   assert_string_equal(name, "S0.385,000000nm");
   abbe_bands_name(&b, 17, name, sizeof name);
@@ -43,23 +42,18 @@ TEST(names_are_as_the_layout_has_them) {
   OK(abbe_bands_make(&s, 3, &b, &error));
   abbe_bands_name(&b, 0, name, sizeof name);
   assert_string_equal(name, "S0.446,666667nm");
-  abbe_bands_free(&b);
-  abbe_spectral_sampling_free(&s);
 }
 
 /* The most bands over a range of one nanometre still have names of their own. */
 TEST(narrow_bands_have_names_of_their_own) {
-  abbe_spectral_sampling s = sampling_over(589, 590, ABBE_BANDS_MAX);
-  abbe_bands b;
-  OK(abbe_bands_make(&s, ABBE_BANDS_MAX, &b, &error));
+  OWNED(abbe_spectral_sampling, s) = sampling_over(589, 590, ABBE_BANDS_MAX);
+  MADE(abbe_bands, b, abbe_bands_make(&s, ABBE_BANDS_MAX, &b, &error));
   char last[64] = "", name[64];
   for (size_t i = 0; i < b.count; i++) {
     abbe_bands_name(&b, i, name, sizeof name);
     assert_string_not_equal(name, last);
     memcpy(last, name, sizeof last);
   }
-  abbe_bands_free(&b);
-  abbe_spectral_sampling_free(&s);
 }
 
 TEST(bands_tile_the_range_and_hold_the_light) {
@@ -67,9 +61,8 @@ TEST(bands_tile_the_range_and_hold_the_light) {
   static const size_t counts[] = {1, 2, 7, 40, 256};
   for (size_t r = 0; r < 3; r++) {
     for (size_t c = 0; c < 5; c++) {
-      abbe_spectral_sampling s = sampling_over(ranges[r][0], ranges[r][1], counts[c]);
-      abbe_bands b;
-      OK(abbe_bands_make(&s, counts[c], &b, &error));
+      OWNED(abbe_spectral_sampling, s) = sampling_over(ranges[r][0], ranges[r][1], counts[c]);
+      MADE(abbe_bands, b, abbe_bands_make(&s, counts[c], &b, &error));
       assert_int_equal(b.count, counts[c]);
       assert_near(b.width_nm * (double)b.count, ranges[r][1] - ranges[r][0], 1e-9);
       assert_near(b.middle_nm[0] - 0.5 * b.width_nm, ranges[r][0], 1e-9);
@@ -85,8 +78,6 @@ TEST(bands_tile_the_range_and_hold_the_light) {
         for (size_t i = 0; i < b.count; i++) watts += (double)b.power[l * b.count + i] * b.width_nm;
         assert_near(watts, 1, 1e-6);
       }
-      abbe_bands_free(&b);
-      abbe_spectral_sampling_free(&s);
     }
   }
 }
@@ -105,22 +96,19 @@ static double power_of(size_t light, double from, double to) {
 TEST(bands_hold_their_lights_power) {
   static const size_t counts[] = {1, 7, 20, 80, 160, 256};
   for (size_t c = 0; c < 6; c++) {
-    abbe_spectral_sampling s = sampling_over(380, 780, counts[c]);
-    abbe_bands b;
-    OK(abbe_bands_make(&s, counts[c], &b, &error));
+    OWNED(abbe_spectral_sampling, s) = sampling_over(380, 780, counts[c]);
+    MADE(abbe_bands, b, abbe_bands_make(&s, counts[c], &b, &error));
     for (size_t i = 0; i < b.count; i++) {
       const double from = b.middle_nm[i] - 0.5 * b.width_nm, to = from + b.width_nm;
       const double day = power_of(0, from, to) / power_of(0, 380, 780) / b.width_nm;
       assert_near((double)b.power[i] / day, 1, 1e-5);
       assert_near((double)b.power[b.count + i] * 400, 1, 1e-6);
     }
-    abbe_bands_free(&b);
-    abbe_spectral_sampling_free(&s);
   }
 }
 
 TEST(none_and_too_many) {
-  abbe_spectral_sampling s = sampling_over(380, 780, 0);
+  OWNED(abbe_spectral_sampling, s) = sampling_over(380, 780, 0);
   abbe_bands b;
   OK(abbe_bands_make(&s, 0, &b, &error));
   assert_int_equal(b.count, 0);
@@ -130,5 +118,4 @@ TEST(none_and_too_many) {
   assert_int_equal(abbe_bands_make(&s, SIZE_MAX, &b, NULL), ABBE_INVALID_ARGUMENT);
   abbe_bands_free(&b);
   abbe_bands_free(NULL);
-  abbe_spectral_sampling_free(&s);
 }

@@ -71,12 +71,12 @@ TEST(glass_is_as_it_was) {
 
 /* As often as their shares say; reflection by the first number alone. */
 TEST(ways_are_chosen_by_their_shares) {
-  const abbe_wave_ways ways = {.count = 4,
-                               .way = {{.share = 0.1f, .reflected = true},
-                                       {.share = 0.2f, .wave = 1, .reflected = true},
-                                       {.share = 0.3f},
-                                       {.share = 0.4f, .wave = 1}},
-                               .reflected = 0.3f};
+  const abbe_wave_ways ways = FIELDS(.count = 4,
+                                     .way = {{.share = 0.1f, .reflected = true},
+                                             {.share = 0.2f, .wave = 1, .reflected = true},
+                                             {.share = 0.3f},
+                                             {.share = 0.4f, .wave = 1}},
+                                     .reflected = 0.3f);
   double count[4] = {0};
   enum { STEPS = 200 };
   for (int i = 0; i < STEPS; i++)
@@ -106,13 +106,10 @@ TEST(ways_are_chosen_by_their_shares) {
 
 /* Axes are turned with the object; two of one material are one medium if their axes are. */
 TEST(media_know_their_axes) {
-  OWNED(abbe_scene, scene);
-  abbe_geometry g;
-  abbe_media m;
   const double lambda_nm[2] = {587.5618, 600};
-  OK(abbe_scene_parse(SCENE, strlen(SCENE), "scene", NULL, &scene, &error));
-  OK(abbe_geometry_make(&scene, &g, &error));
-  OK(abbe_media_make(&g, lambda_nm, 1, &m, &error));
+  MADE(abbe_scene, scene, abbe_scene_parse(SCENE, strlen(SCENE), "scene", NULL, &scene, &error));
+  MADE(abbe_geometry, g, abbe_geometry_make(&scene, &g, &error));
+  MADE(abbe_media, m, abbe_media_make(&g, lambda_nm, 1, &m, &error));
   abbe_uniaxial u;
   abbe_media_crystal(&m, 0, 0, 0, &u);
   assert_near(u.n_o, 1.658461, 1e-6);
@@ -129,6 +126,4 @@ TEST(media_know_their_axes) {
   assert_false(abbe_media_is_crystal(&m, 2));
   abbe_media_crystal(&m, 0, 0, 0, &u);
   assert_true(u.n_e == u.n_o);
-  abbe_media_free(&m);
-  abbe_geometry_free(&g);
 }

@@ -14,13 +14,11 @@ static void ray(const abbe_geometry *g, const double from[3], const double to[3]
 
 /* part: of the sentence that refuses it, or NULL. */
 static void make_of(const char *text, const char *part) {
-  OWNED(abbe_scene, scene);
-  abbe_geometry g;
+  OWNED(abbe_geometry, g) = {0};
   abbe_error error = {0};
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   assert_int_equal(abbe_geometry_make(&scene, &g, &error), part ? ABBE_UNSUPPORTED : ABBE_OK);
   if (part) assert_non_null(strstr(error.text, part));
-  abbe_geometry_free(&g);
 }
 
 /* A plate of half a diagonal of 0.1 m or so: eight steps off its faces are 2^-15 of that. */
@@ -36,21 +34,19 @@ TEST(what_is_thinner_than_its_steps_is_refused) {
 TEST(foil_is_refused_however_it_is_turned) {
   static const char *const shape[] = {"sphere, radius: 0.04", "ring, major: 0.04, minor: 0.01"};
   for (int i = 0; i < 8; i++) {
-    char text[1024];
-    snprintf(text, sizeof text,
-             CAMERA POINT_LIGHT FLOOR
-             "- {name: foil, shape: %s, transform: [{scale: [1, 1, %s]}, {rotate: {axis: [1, 0.5, "
-             "0], angle: %d}}, {translate: [0, 0, 0.2]}], material: crown}\n",
-             shape[i % 2], i < 4 ? "1e-6" : "1e-2", i / 2 % 2 * 40);
-    make_of(text, i < 4 ? "does not tell its front from its back" : NULL);
+    make_of(
+        printed(
+            CAMERA POINT_LIGHT FLOOR
+            "- {name: foil, shape: %s, transform: [{scale: [1, 1, %s]}, {rotate: {axis: [1, 0.5, "
+            "0], angle: %d}}, {translate: [0, 0, 0.2]}], material: crown}\n",
+            shape[i % 2], i < 4 ? "1e-6" : "1e-2", i / 2 % 2 * 40),
+        i < 4 ? "does not tell its front from its back" : NULL);
   }
 }
 
 TEST(hits_a_sphere_from_outside_and_inside) {
-  OWNED(abbe_scene, scene);
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
-  abbe_geometry g;
-  OK(abbe_geometry_make(&scene, &g, &error));
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
+  MADE(abbe_geometry, g, abbe_geometry_make(&scene, &g, &error));
   float o[3], d[3], next[3];
   abbe_hit hit;
   ray(&g, (double[3]){0, 0, 1}, (double[3]){0.03, 0.01, 0.2}, o, d);
@@ -71,16 +67,13 @@ TEST(hits_a_sphere_from_outside_and_inside) {
   assert_true(abbe_vector_length(chord) > 0.1);
   assert_true(abbe_geometry_occluded(&g, ABBE_GEOMETRY_REFRACTORS, o, d, INFINITY));
   assert_false(abbe_geometry_occluded(&g, ABBE_GEOMETRY_RECEIVERS, o, d, 1));
-  abbe_geometry_free(&g);
 }
 
 /* A closed mesh is left as often as it is entered, also along its edges and through its corners:
  * watertight. */
 TEST(no_ray_slips_between_faces) {
-  OWNED(abbe_scene, scene);
-  load_shipped("gem", &scene);
-  abbe_geometry g;
-  OK(abbe_geometry_make(&scene, &g, &error));
+  OWNED(abbe_scene, scene) = shipped_scene("gem");
+  MADE(abbe_geometry, g, abbe_geometry_make(&scene, &g, &error));
   const abbe_object *gem = &scene.object[g.refractor_object[0]];
   double middle[3];
   for (int k = 0; k < 3; k++) middle[k] = 0.5 * (gem->min[k] + gem->max[k]);
@@ -96,7 +89,6 @@ TEST(no_ray_slips_between_faces) {
         ray(&g, middle, to, o, d);
         assert_true(abbe_geometry_hit(&g, ABBE_GEOMETRY_REFRACTORS, o, d, INFINITY, &hit));
       }
-  abbe_geometry_free(&g);
 }
 
 /* The same hits, relative to the size, for scenes from 1e-4 to 1e5 m and far from the origin. */
@@ -104,8 +96,7 @@ TEST(size_and_place_do_not_matter) {
   float expected[3] = {0};
   const double sizes[] = {1, 1e-4, 1e5}, places[] = {0, 0, 1e6};
   for (int i = 0; i < 3; i++) {
-    OWNED(abbe_scene, scene);
-    load_text(CAMERA POINT_LIGHT FLOOR RING("crown"), &scene);
+    OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR RING("crown"));
     for (size_t j = 0; j < scene.object_count; j++) {
       abbe_object *o = &scene.object[j];
       for (size_t v = 0; v < o->mesh.vertex_count; v++)
@@ -116,8 +107,7 @@ TEST(size_and_place_do_not_matter) {
         o->max[k] = sizes[i] * o->max[k] + places[i];
       }
     }
-    abbe_geometry g;
-    OK(abbe_geometry_make(&scene, &g, &error));
+    MADE(abbe_geometry, g, abbe_geometry_make(&scene, &g, &error));
     double from[3] = {0.05, 0.06, 0.5}, to[3] = {0.08, 0, 0.2};
     for (int k = 0; k < 3; k++) {
       from[k] = sizes[i] * from[k] + places[i];
@@ -133,6 +123,5 @@ TEST(size_and_place_do_not_matter) {
       else
         assert_true(fabsf(hit.n[k] - expected[k]) < 1e-4f);
     }
-    abbe_geometry_free(&g);
   }
 }

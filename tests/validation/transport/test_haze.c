@@ -14,13 +14,13 @@ typedef struct fixture {
 } fixture;
 
 static void make(const char *text, fixture *f) {
-  load_text(text, &f->scene);
+  f->scene = scene_of(text);
   OK(abbe_geometry_make(&f->scene, &f->geometry, &error));
   for (int k = 0; k <= STEPS; k++) f->lambda_nm[k] = 400 + 300.0 * k / STEPS;
   OK(abbe_media_make(&f->geometry, f->lambda_nm, STEPS, &f->media, &error));
 }
 
-static void drop(fixture *f) {
+static void fixture_free(fixture *f) {
   abbe_media_free(&f->media);
   abbe_geometry_free(&f->geometry);
   abbe_scene_free(&f->scene);
@@ -31,7 +31,7 @@ static void drop(fixture *f) {
   "         box: [[-1, -2, -3], [1, 2, 3]]}\n"
 
 TEST(tables_are_the_scene_s) {
-  fixture f;
+  OWNED(fixture, f) = {0};
   make(CAMERA POINT_LIGHT MIST("[[400, 4], [700, 1]]", "0.5")
            FLOOR BALL("smoke") "- {name: cloudy, shape: sphere, radius: 0.02, material: grey, "
                                "medium: {scattering: 3, g: -0.2}}\n",
@@ -58,7 +58,6 @@ TEST(tables_are_the_scene_s) {
     assert_near((double)abbe_haze_phase(h, 1, (float)cosine), abbe_medium_phase(-0.2, cosine),
                 1e-6);
   }
-  drop(&f);
 }
 
 /* The part [*from, *to] of the line o + t d that is in a box. */
@@ -77,8 +76,7 @@ static bool clip(const double min[3], const double max[3], const double o[3], co
 }
 
 TEST(a_way_is_as_long_as_its_part_in_the_region) {
-  fixture f;
-  make(CAMERA POINT_LIGHT MIST("0.3", "0.2") FLOOR BALL("flat"), &f);
+  FILLED(fixture, f, make(CAMERA POINT_LIGHT MIST("0.3", "0.2") FLOOR BALL("flat"), &f));
   const abbe_haze *h = &f.media.haze;
   uint64_t random = 9;
   for (int i = 0; i < 300; i++) {
@@ -95,7 +93,6 @@ TEST(a_way_is_as_long_as_its_part_in_the_region) {
     const double left = some ? exp(-0.5 * (to - from) * sqrt(length)) : 1;
     assert_near((double)abbe_haze_left(h, -1, p, along, 0, INFINITY, 3, 0.5f), left, 1e-4);
   }
-  drop(&f);
 }
 
 /* Places as dense as they say, on thin and thick ways: their mean weight is the length. */
@@ -127,6 +124,6 @@ TEST(nothing_is_no_haze) {
   const float o[3] = {0}, d[3] = {0, 0, 1};
   assert_false(abbe_haze_clip(&f.media.haze, -1, o, d, &from, &to));
   assert_true(abbe_haze_left(&f.media.haze, -1, o, d, 0, 1, 0, 0) == 1);
-  drop(&f);
+  fixture_free(&f);
   abbe_haze_free(NULL);
 }

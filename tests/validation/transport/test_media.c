@@ -21,15 +21,12 @@ TEST(crossing_and_crossing_back_change_nothing) {
 
 /* Between knots the index is interpolated: the error of a line over a step of 0.2 nm. */
 TEST(tables_follow_the_formula) {
-  OWNED(abbe_scene, scene);
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("smoke"), &scene);
-  abbe_geometry g;
-  OK(abbe_geometry_make(&scene, &g, &error));
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("smoke"));
+  MADE(abbe_geometry, g, abbe_geometry_make(&scene, &g, &error));
   enum { STEPS = 2000 };
   static double lambda_nm[STEPS + 1];
   for (int k = 0; k <= STEPS; k++) lambda_nm[k] = 380 + 400.0 * k / STEPS;
-  abbe_media m;
-  OK(abbe_media_make(&g, lambda_nm, STEPS, &m, &error));
+  MADE(abbe_media, m, abbe_media_make(&g, lambda_nm, STEPS, &m, &error));
   assert_true(m.dispersive[0]);
   assert_false(m.dispersive[1]);
   for (uint32_t k = 0; k < STEPS; k += 97) {
@@ -42,34 +39,25 @@ TEST(tables_follow_the_formula) {
   float a = abbe_media_attenuation(&m, 1, 100, 0);
   assert_true(fabs((double)a / (20 * g.unit) - 1) < 1e-6);
   assert_true(abbe_media_n(&m, -1, 3, 0.5f) == 1);
-  abbe_media_free(&m);
-  abbe_geometry_free(&g);
 }
 
 TEST(refuses_what_the_record_does_not_know) {
-  OWNED(abbe_scene, scene);
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &scene);
-  abbe_geometry g;
-  OK(abbe_geometry_make(&scene, &g, &error));
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("narrow"));
+  MADE(abbe_geometry, g, abbe_geometry_make(&scene, &g, &error));
   abbe_media m;
   double lambda_nm[2] = {380, 780};
   REFUSED(ABBE_OUT_OF_RANGE, "narrow", abbe_media_make(&g, lambda_nm, 1, &m, &error));
-  abbe_geometry_free(&g);
 }
 
 TEST(refractors_of_one_material_are_one_medium) {
-  OWNED(abbe_scene, scene);
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("dense") RING("crown"), &scene);
-  abbe_geometry g;
-  OK(abbe_geometry_make(&scene, &g, &error));
-  abbe_media m;
+  OWNED(abbe_scene, scene) =
+      scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("dense") RING("crown"));
+  MADE(abbe_geometry, g, abbe_geometry_make(&scene, &g, &error));
   const double lambda_nm[2] = {380, 780};
-  OK(abbe_media_make(&g, lambda_nm, 1, &m, &error));
+  MADE(abbe_media, m, abbe_media_make(&g, lambda_nm, 1, &m, &error));
   assert_true(abbe_media_same(&m, 0, 2) && abbe_media_same(&m, 2, 0));
   assert_true(abbe_media_same(&m, 1, 1) && abbe_media_same(&m, -1, -1));
   assert_false(abbe_media_same(&m, 0, 1));
   assert_false(abbe_media_same(&m, -1, 0));
   assert_false(abbe_media_same(&m, 1, -1));
-  abbe_media_free(&m);
-  abbe_geometry_free(&g);
 }

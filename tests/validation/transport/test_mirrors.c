@@ -12,16 +12,12 @@ enum { STEPS = 40 };
   ", shape: sphere, radius: 0.05, transform: [{translate: [0, 0, 0.3]}], mirror: " what "}\n"
 
 TEST(metals_reflect_as_their_n_and_k_say) {
-  OWNED(abbe_scene, scene) = {0};
-  abbe_geometry g;
-  abbe_mirrors m;
   double lambda_nm[STEPS + 1];
   for (int k = 0; k <= STEPS; k++) lambda_nm[k] = 380 + 10.0 * k;
-  load_text(DEFAULT_TABLE POINT_LIGHT FLOOR MIRROR("a", "silver") MIRROR("b", "gold")
-                MIRROR("c", "0.7") MIRROR("d", "copper"),
-            &scene);
-  OK(abbe_geometry_make(&scene, &g, &error));
-  OK(abbe_mirrors_make(&g, lambda_nm, STEPS, &m, &error));
+  OWNED(abbe_scene, scene) = scene_of(DEFAULT_TABLE POINT_LIGHT FLOOR MIRROR("a", "silver") MIRROR(
+      "b", "gold") MIRROR("c", "0.7") MIRROR("d", "copper"));
+  MADE(abbe_geometry, g, abbe_geometry_make(&scene, &g, &error));
+  MADE(abbe_mirrors, m, abbe_mirrors_make(&g, lambda_nm, STEPS, &m, &error));
   assert_int_equal(m.count, 4);
   for (uint32_t i = 0; i < 4; i++) {
     assert_int_equal(abbe_mirrors_is_grey(&m, i), i == 2);
@@ -39,17 +35,12 @@ TEST(metals_reflect_as_their_n_and_k_say) {
         assert_near(seen, abbe_optics_fresnel_conductor((double)cosine, n, kk), 5e-6);
       }
   }
-  abbe_mirrors_free(&m);
-  abbe_geometry_free(&g);
 }
 
 TEST(what_is_not_known_is_refused) {
-  OWNED(abbe_scene, scene);
-  abbe_geometry g;
   abbe_mirrors m;
   const double lambda_nm[] = {380, 1e5};
-  load_text(DEFAULT_TABLE POINT_LIGHT FLOOR MIRROR("a", "gold"), &scene);
-  OK(abbe_geometry_make(&scene, &g, &error));
+  OWNED(abbe_scene, scene) = scene_of(DEFAULT_TABLE POINT_LIGHT FLOOR MIRROR("a", "gold"));
+  MADE(abbe_geometry, g, abbe_geometry_make(&scene, &g, &error));
   REFUSED(ABBE_OUT_OF_RANGE, "gold", abbe_mirrors_make(&g, lambda_nm, 1, &m, &error));
-  abbe_geometry_free(&g);
 }

@@ -16,7 +16,7 @@ static const abbe_environment_light dark;
 
 static void setup(void) {
   const abbe_spectral_sampling_desc desc = {.min_nm = 380, .max_nm = 780, .uniform = 0.1};
-  load_text(CAMERA POINT_LIGHT CARD, &scene);
+  scene = scene_of(CAMERA POINT_LIGHT CARD);
   OK(abbe_geometry_make(&scene, &geometry, &error));
   OK(abbe_spectral_sampling_make(&scene, &desc, &sampling, &error));
   OK(abbe_bands_make(&sampling, 40, &bands, &error));
@@ -71,18 +71,17 @@ static void put_texture(size_t width, size_t height, const double repeat[2]) {
 GROUP(setup, teardown);
 
 TEST(without_a_texture_it_is_the_objects) {
-  abbe_reflectance r = make(ABBE_RGB_SPACE_REC709);
+  OWNED(abbe_reflectance, r) = make(ABBE_RGB_SPACE_REC709);
   float c[3];
   colour_at(&r, 0.3, -0.7, c);
   for (int k = 0; k < 3; k++) assert_near((double)c[k], scene.object[0].reflectance[k], 1e-7);
-  abbe_reflectance_free(&r);
 }
 
 /* x to the right is u, y up is v; the texture's row 0 is at the top. Between the middles of texels
  * a linear ramp stays linear. */
 TEST(textures_stand_upright) {
   put_texture(16, 8, (double[2]){1, 1});
-  abbe_reflectance r = make(ABBE_RGB_SPACE_REC709);
+  OWNED(abbe_reflectance, r) = make(ABBE_RGB_SPACE_REC709);
   for (int i = 0; i < 100; i++) {
     double u = 0.05 + 0.1 * (i % 10), v = 0.07 + 0.095 * (double)(i / 10);
     float c[3];
@@ -91,12 +90,11 @@ TEST(textures_stand_upright) {
     assert_near((double)c[1], 0.5 * u, 1e-5);
     assert_near((double)c[2], 0.25 * v, 1e-5);
   }
-  abbe_reflectance_free(&r);
 }
 
 TEST(textures_repeat) {
   put_texture(16, 8, (double[2]){4, 3});
-  abbe_reflectance r = make(ABBE_RGB_SPACE_REC709);
+  OWNED(abbe_reflectance, r) = make(ABBE_RGB_SPACE_REC709);
   float first[3], c[3];
   colour_at(&r, -1 + 2 * 0.3 / 4, -1 + 2 * 0.4 / 3, first);
   assert_near((double)first[1], 0.5 * 0.3, 1e-5);
@@ -109,7 +107,6 @@ TEST(textures_repeat) {
   /* across the seam the last texel and the first are mixed */
   colour_at(&r, -1 + 2 * 1.0 / 4, 0.1, c);
   assert_near((double)c[1], 0.5 * 0.5, 1e-4);
-  abbe_reflectance_free(&r);
 }
 
 /* Repeats below 0 mirror; a texture of one texel is its colour everywhere. */
@@ -138,7 +135,7 @@ TEST(awkward_textures) {
 TEST(wavelengths_add_up_to_the_colour) {
   const abbe_reflected card = {.share = {0.8f, 0.5f, 0.25f}}, grey = {.share = {0.5f, 0.5f, 0.5f}};
   for (int space = 0; space < ABBE_RGB_SPACE_COUNT; space++) {
-    abbe_reflectance r = make((abbe_rgb_space)space);
+    OWNED(abbe_reflectance, r) = make((abbe_rgb_space)space);
     double to_xyz[9], from_xyz[9], expected[3], sum[3] = {0};
     float c[3], white[3];
     abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
@@ -161,7 +158,6 @@ TEST(wavelengths_add_up_to_the_colour) {
       assert_near((double)c[k], expected[k], 1e-3);
       assert_near((double)white[k], one[k], 1e-5);
     }
-    abbe_reflectance_free(&r);
   }
 }
 

@@ -9,7 +9,7 @@ static float dot(const float a[3], const float b[3]) {
 }
 
 static void make(const char *text, abbe_scene *scene, abbe_geometry *g) {
-  load_text(text, scene);
+  *scene = scene_of(text);
   OK(abbe_geometry_make(scene, g, &error));
 }
 
@@ -53,10 +53,10 @@ static void check_against_embree(const char *text) {
 
 TEST(a_ray_leaves_where_embree_says) {
   check_against_embree(CAMERA POINT_LIGHT FLOOR BALL("crown"));
-  check_against_embree(CAMERA POINT_LIGHT FLOOR
-                       "- {name: stone, shape: brilliant, diameter: 0.1, transform: [{rotate: "
-                       "{axis: [1, 2, 0], angle: 30}}, {translate: [0, 0, 0.2]}], material: "
-                       "crown}\n");
+  check_against_embree(
+      CAMERA POINT_LIGHT FLOOR
+      "- {name: stone, shape: brilliant, diameter: 0.1, transform: [{rotate: {axis: [1, 2, 0], "
+      "angle: 30}}, {translate: [0, 0, 0.2]}], material: crown}\n");
   check_against_embree(CAMERA POINT_LIGHT FLOOR
                        "- {name: prism, shape: prism, side: 0.1, length: 0.1, transform: "
                        "[{translate: [0.3, 0, 0.2]}], material: crown}\n");
@@ -66,9 +66,8 @@ TEST(a_ray_leaves_where_embree_says) {
 TEST(rounding_at_a_face_loses_nothing) {
   abbe_scene scene;
   abbe_geometry g;
-  make(CAMERA POINT_LIGHT FLOOR
-       "- {name: stone, shape: brilliant, diameter: 0.1, transform: [{translate: [0, 0, 0.2]}], "
-       "material: crown}\n",
+  make(CAMERA POINT_LIGHT FLOOR "- {name: stone, shape: brilliant, diameter: 0.1, transform: "
+                                "[{translate: [0, 0, 0.2]}], material: crown}\n",
        &scene, &g);
   const abbe_solid *s = &g.solid[0];
   uint64_t random = 9;
@@ -90,11 +89,9 @@ TEST(rounding_at_a_face_loses_nothing) {
 }
 
 static void check_alone(const char *objects, const bool *alone) {
-  char text[4096];
   abbe_scene scene;
   abbe_geometry g;
-  snprintf(text, sizeof text, CAMERA POINT_LIGHT FLOOR "%s", objects);
-  make(text, &scene, &g);
+  make(printed(CAMERA POINT_LIGHT FLOOR "%s", objects), &scene, &g);
   for (size_t i = 0; i < g.refractor_count; i++)
     if (abbe_solid_is(&g.solid[i]) != alone[i])
       fail_msg("%zu is %s by itself: %s", i, alone[i] ? "not" : "", objects);

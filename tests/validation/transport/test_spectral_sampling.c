@@ -13,12 +13,9 @@ enum { STEPS = ABBE_SPECTRAL_SAMPLING_STEPS };
 
 static void make(abbe_scene *scene, double min_nm, double max_nm, double uniform,
                  abbe_spectral_sampling *s) {
-  load_text(CAMERA LIGHTS_OF_THREE_KINDS FLOOR, scene);
-  abbe_error error = {0};
+  *scene = scene_of(CAMERA LIGHTS_OF_THREE_KINDS FLOOR);
   const abbe_spectral_sampling_desc desc = {.min_nm = min_nm, .max_nm = max_nm, .uniform = uniform};
-  abbe_result result = abbe_spectral_sampling_make(scene, &desc, s, &error);
-  if (result != ABBE_OK) print_error("%s\n", error.text);
-  assert_int_equal(result, ABBE_OK);
+  OK(abbe_spectral_sampling_make(scene, &desc, s, &error));
 }
 
 static void drop(abbe_scene *scene, abbe_spectral_sampling *s) {
@@ -156,9 +153,8 @@ TEST(colours_are_the_xyz_in_the_space) {
 }
 
 TEST(what_cannot_be_sampled_is_refused) {
-  OWNED(abbe_scene, scene);
-  load_text(CAMERA LIGHTS_OF_THREE_KINDS FLOOR, &scene);
-  abbe_spectral_sampling s;
+  OWNED(abbe_scene, scene) = scene_of(CAMERA LIGHTS_OF_THREE_KINDS FLOOR);
+  OWNED(abbe_spectral_sampling, s) = {0};
   /* no eye sees it */
   const abbe_spectral_sampling_desc unseen = {.min_nm = 900, .max_nm = 1000, .uniform = 0.15};
   REFUSED(ABBE_INVALID_ARGUMENT, "'day'", abbe_spectral_sampling_make(&scene, &unseen, &s, &error));
@@ -172,18 +168,16 @@ TEST(what_cannot_be_sampled_is_refused) {
         .min_nm = bad[i][0], .max_nm = bad[i][1], .uniform = bad[i][2]};
     assert_int_equal(abbe_spectral_sampling_make(&scene, &desc, &s, NULL), ABBE_INVALID_ARGUMENT);
   }
-  abbe_spectral_sampling_free(&s);
 }
 
 /* Light of lines comes at their wavelengths, whatever else shines and where bands end. */
 TEST(paths_of_lines_have_their_wavelengths) {
   for (size_t bands = 0; bands <= 7; bands += 7) {
-    abbe_scene scene;
     abbe_spectral_sampling s;
-    load_text(CAMERA "lights:\n- {name: lamp, kind: point, position: [0, 0, 1], intensity: 1, "
-                     "illuminant: sodium}\n- {name: day, kind: point, position: [0, 1, 1], "
-                     "intensity: 1}\n" FLOOR,
-              &scene);
+    abbe_scene scene = scene_of(
+        CAMERA
+        "lights:\n- {name: lamp, kind: point, position: [0, 0, 1], intensity: 1, illuminant: "
+        "sodium}\n- {name: day, kind: point, position: [0, 1, 1], intensity: 1}\n" FLOOR);
     const abbe_spectral_sampling_desc desc = {
         .min_nm = 380, .max_nm = 780, .uniform = 0.15, .bands = bands};
     OK(abbe_spectral_sampling_make(&scene, &desc, &s, &error));

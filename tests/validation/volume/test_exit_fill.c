@@ -161,24 +161,19 @@ static double middle_error(const abbe_scene *scene, const abbe_caustic_volume *v
 TEST(a_prism_bends_as_snell_has_it) {
   enum { LEVELS = SANITIZED ? 2 : 3 };
   static const size_t nodes[] = {42, 162, 642};
-  OWNED(abbe_scene, scene) = {0};
   double error[LEVELS], ghosts[LEVELS];
-  load_text(WEDGE("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(WEDGE("crown"));
   for (size_t i = 0; i < LEVELS; i++) {
-    OWNED(abbe_caustic_volume, v);
     abbe_volume_fill_statistics done;
     const double apart = 1.107 / (double)(2 << i);
-    const abbe_volume_fill_desc desc = {.object = 1,
-                                        .nodes = nodes[i],
-                                        .exits = 1200,
-                                        .region = {.kind = ABBE_REGION_GRID, .side = 2},
-                                        .threads = 2};
-    fill_volume(&scene, &desc, &v, &done);
+    const abbe_volume_fill_desc desc =
+        FIELDS(.object = 1, .nodes = nodes[i], .exits = 1200,
+               .region = {.kind = ABBE_REGION_GRID, .side = 2}, .threads = 2);
+    FILLED(abbe_caustic_volume, v, fill_volume(&scene, &desc, &v, &done));
     error[i] = middle_error(&scene, &v, apart * apart / 2, &ghosts[i]);
-    print_message(
-        "%zu nodes: off by %.2e rad, but for %.2g of it, by more than %.2e; %zu sequences, %.2g "
-        "alone\n",
-        nodes[i], error[i], ghosts[i], apart * apart / 2, done.sequences, done.alone);
+    print_message("%zu nodes: off by %.2e rad, but for %.2g of it, by more than %.2e; %zu "
+                  "sequences, %.2g alone\n",
+                  nodes[i], error[i], ghosts[i], apart * apart / 2, done.sequences, done.alone);
     assert_near(done.carried, 1, 0.01);
   }
   for (size_t i = 0; i < LEVELS; i++) assert_true(ghosts[i] < (i == 0 ? 0.05 : 0.01));
@@ -231,16 +226,12 @@ static void look_at_ball_ray(void *user, const abbe_exit_ray *ray, double flux, 
 
 /* A lamp at a distance D: a ball of n focuses its light at f D / (D - f), f = n R / (2 (n - 1)). */
 TEST(lamps_nearby_are_lamps_nearby) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_caustic_volume, v);
   abbe_volume_fill_statistics done;
-  load_text(ORB("flat"), &scene);
-  const abbe_volume_fill_desc desc = {.object = 1,
-                                      .exits = 1200,
-                                      .nodes = 162,
-                                      .region = {.kind = ABBE_REGION_GRID, .side = 2},
-                                      .threads = 2};
-  fill_volume(&scene, &desc, &v, &done);
+  OWNED(abbe_scene, scene) = scene_of(ORB("flat"));
+  const abbe_volume_fill_desc desc =
+      FIELDS(.object = 1, .exits = 1200, .nodes = 162,
+             .region = {.kind = ABBE_REGION_GRID, .side = 2}, .threads = 2);
+  FILLED(abbe_caustic_volume, v, fill_volume(&scene, &desc, &v, &done));
   abbe_light light = {.kind = ABBE_LIGHT_POINT, .power = 1};
   abbe_volume_place place;
   OK(abbe_volume_body_find(&v.body, &scene.object[1], &place, &error));
@@ -267,11 +258,9 @@ TEST(lamps_nearby_are_lamps_nearby) {
 
 /* At a node the cells hold what photons bring there, in any light's colour. */
 TEST(cells_hold_what_photons_bring) {
-  OWNED(abbe_scene, scene) = {0};
   OWNED(abbe_caustic_volume, exits);
-  OWNED(abbe_caustic_volume, values);
   abbe_volume_fill_statistics done;
-  load_text(WEDGE("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(WEDGE("crown"));
   const abbe_region_desc region = {.kind = ABBE_REGION_OCTAHEDRAL, .side = 8, .shells = 4};
   const abbe_volume_fill_desc desc = {.object = 1,
                                       .nodes = 12,
@@ -279,14 +268,10 @@ TEST(cells_hold_what_photons_bring) {
                                       .asymmetric = true, /* else its images are between nodes */
                                       .region = region,
                                       .threads = 2},
-                              by_photons = {.object = 1,
-                                            .nodes = 12,
-                                            .region = region,
-                                            .photons = 1 << 15,
-                                            .passes = 1,
-                                            .threads = 2};
+                              by_photons = FIELDS(.object = 1, .nodes = 12, .region = region,
+                                                  .photons = 1 << 15, .passes = 1, .threads = 2);
   fill_volume(&scene, &desc, &exits, &done);
-  fill_volume(&scene, &by_photons, &values, &done);
+  FILLED(abbe_caustic_volume, values, fill_volume(&scene, &by_photons, &values, &done));
   const size_t count = 9 * exits.region.cells, node = 5;
   FREED float *value = malloc(count * sizeof *value);
   assert_non_null(value);
@@ -318,10 +303,9 @@ TEST(cells_hold_what_photons_bring) {
 }
 
 TEST(threads_change_nothing) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_caustic_volume v[3];
   abbe_volume_fill_statistics done;
-  load_text(WEDGE("murk"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(WEDGE("murk"));
   abbe_volume_fill_desc desc = {.object = 1, .nodes = 12, .exits = 500};
   for (size_t i = 0; i < 3; i++) {
     desc.threads = i == 0 ? 1 : 2;
@@ -338,11 +322,10 @@ TEST(threads_change_nothing) {
 }
 
 TEST(requests) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_caustic_volume v;
   abbe_volume_fill_statistics done;
   int calls = 0;
-  load_text(WEDGE("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(WEDGE("crown"));
   abbe_volume_fill_desc desc = {.object = 1, .exits = 10, .nodes = 1};
   REFUSED(ABBE_INVALID_ARGUMENT, "nodes", abbe_volume_fill(&scene, &desc, &v, &done, &error));
   desc.nodes = 12;

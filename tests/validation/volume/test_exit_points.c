@@ -11,9 +11,7 @@ static void make_points(const char *objects, abbe_scene *scene, abbe_lone_object
                         abbe_exit_points *points) {
   static double unit_map[1][9] = {{1, 0, 0, 0, 1, 0, 0, 0, 1}};
   const abbe_body_symmetry none = {1, unit_map};
-  char text[2048];
-  snprintf(text, sizeof text, "%s%s", CAMERA SUN FLOOR, objects);
-  load_text(text, scene);
+  *scene = scene_of(printed("%s%s", CAMERA SUN FLOOR, objects));
   OK(abbe_lone_object_make(scene, 1, 0, lone, &error));
   OK(abbe_exit_points_make(lone, &none, COUNT, 380, 780, 0, points, &error));
   assert_int_equal(points->count, COUNT);

@@ -21,7 +21,7 @@ typedef struct bench {
 static void make_bench(const char *text, bench *b) {
   static const double lambda_nm[2] = {500, 600};
   *b = (bench){0};
-  load_text(text, &b->scene);
+  b->scene = scene_of(text);
   OK(abbe_lone_object_make(&b->scene, 1, 0, &b->lone, &error));
   OK(abbe_media_make(&b->lone.geometry, lambda_nm, 1, &b->media, &error));
   OK(abbe_mirrors_make(&b->lone.geometry, lambda_nm, 1, &b->mirrors, &error));
@@ -30,7 +30,7 @@ static void make_bench(const char *text, bench *b) {
       .geometry = &b->lone.geometry, .media = &b->media, .mirrors = &b->mirrors, .facet = b->facet};
 }
 
-static void free_bench(bench *b) {
+static void bench_free(bench *b) {
   abbe_media_free(&b->media);
   abbe_mirrors_free(&b->mirrors);
   abbe_lone_object_free(&b->lone);
@@ -49,10 +49,9 @@ static void walk(const bench *b, const double place[3], float chance, abbe_exit_
 TEST(a_plate) {
   static const double top[3] = {0.1, 0, 0.51}, beside[3] = {0.11, 0.01, 0.51},
                       under[3] = {0.1, 0, 0.49}, near_end[3] = {0.195, 0, 0.51};
-  bench b;
   abbe_exit_end end, other, side;
   double out[3];
-  make_bench(PLATE("flat"), &b);
+  FILLED(bench, b, make_bench(PLATE("flat"), &b));
   walk(&b, top, 0.9f, &end);
   assert_near((double)end.carried, 1, 0);
   assert_near((double)end.way[0], 0.6, 1e-6);
@@ -70,22 +69,19 @@ TEST(a_plate) {
   assert_true(side.facets != end.facets);
   walk(&b, under, 0.9f, &other); /* the plate itself is before it */
   assert_near((double)other.carried, 0, 0);
-  free_bench(&b);
 }
 
 TEST(what_is_lost_on_the_way) {
   static const double top[3] = {0.1, 0, 0.51};
-  bench b;
   abbe_exit_end end;
-  make_bench(PLATE("grey"), &b);
+  FILLED(bench, b, make_bench(PLATE("grey"), &b));
   walk(&b, top, 0.9f, &end);
   assert_near((double)end.carried, exp(-10 * 0.02 / sqrt(1 - 0.16)), 1e-5);
-  free_bench(&b);
+  bench_free(&b);
   make_bench(CAMERA SUN FLOOR "- {name: plate, shape: box, size: [0.2, 0.2, 0.02], mirror: 0.7, "
                               "transform: [{translate: [0.1, 0, 0.5]}]}\n",
              &b);
   walk(&b, top, 0.9f, &end);
   assert_near((double)end.carried, 0.7, 1e-6);
   assert_near((double)end.way[2], 0.8, 1e-6);
-  free_bench(&b);
 }

@@ -68,14 +68,12 @@ static bool stop_halfway(void *user, double done) {
 
 /* Stopped after half the nodes, and gone on with: what an unbroken run makes. */
 TEST(fills_go_on_to_the_same_bits) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(CAMERA SUN FLOOR BRICK("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA SUN FLOOR BRICK("crown"));
   for (int exits = 0; exits < 2; exits++) {
-    OWNED(abbe_caustic_volume, whole);
     OWNED(abbe_caustic_volume, part);
     abbe_volume_fill_statistics once, twice;
     abbe_volume_fill_desc d = request(exits);
-    OK(abbe_volume_fill(&scene, &d, &whole, &once, &error));
+    MADE(abbe_caustic_volume, whole, abbe_volume_fill(&scene, &d, &whole, &once, &error));
     d.checkpoint = path;
     d.checkpoint_s = 1000;
     d.progress = stop_halfway;
@@ -120,26 +118,23 @@ static void assert_refused(const abbe_scene *scene, const abbe_volume_fill_desc 
 /* Bytes `from_end` of the file's end become these; the file is refused, and whole again. */
 static void forge(const abbe_scene *scene, const abbe_volume_fill_desc *d, char *data, size_t size,
                   size_t from_end, const void *bytes, size_t count) {
-  char *kept = malloc(size);
+  FREED char *kept = malloc(size);
   memcpy(kept, data, size);
   memcpy(data + size - from_end, bytes, count);
   write_forged(data, size);
   assert_refused(scene, d);
   memcpy(data, kept, size);
-  free(kept);
 }
 
 TEST(forged_files_are_refused) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(CAMERA SUN FLOOR BRICK("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA SUN FLOOR BRICK("crown"));
   for (int exits = 0; exits < 2; exits++) {
-    OWNED(abbe_caustic_volume, whole);
     OWNED(abbe_caustic_volume, part);
     abbe_volume_fill_statistics once, twice;
     abbe_volume_fill_desc d = request(exits);
     FREED char *data = NULL;
     size_t size;
-    OK(abbe_volume_fill(&scene, &d, &whole, &once, &error));
+    MADE(abbe_caustic_volume, whole, abbe_volume_fill(&scene, &d, &whole, &once, &error));
     d.checkpoint = path;
     d.checkpoint_s = 1000;
     d.progress = stop_halfway;

@@ -20,17 +20,12 @@ static double value_at(const abbe_caustic_volume *v, size_t node, size_t cell, s
 /* Light straight down on a plate of n = 1.5: 2 n / (n^2 + 1) of it goes on through all reflections
  * inside, and the rest goes back; in the plate's own cells nothing is asked. */
 TEST(a_plate_has_two_beams) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_caustic_volume, v) = {0};
   abbe_volume_fill_statistics done;
-  load_text(PLATE("flat"), &scene);
-  const abbe_volume_fill_desc desc = {.object = 1,
-                                      .nodes = 1,
-                                      .region = {.kind = ABBE_REGION_GRID, .side = 16},
-                                      .photons = 1 << 16,
-                                      .passes = 4,
-                                      .threads = 2};
-  fill_volume(&scene, &desc, &v, &done);
+  OWNED(abbe_scene, scene) = scene_of(PLATE("flat"));
+  const abbe_volume_fill_desc desc =
+      FIELDS(.object = 1, .nodes = 1, .region = {.kind = ABBE_REGION_GRID, .side = 16},
+             .photons = 1 << 16, .passes = 4, .threads = 2);
+  FILLED(abbe_caustic_volume, v, fill_volume(&scene, &desc, &v, &done));
   const double through = 2 * 1.5 / (1.5 * 1.5 + 1);
   size_t seen = 0;
   for (size_t cell = 0; cell < v.region.cells; cell++) {
@@ -55,16 +50,12 @@ TEST(a_plate_has_two_beams) {
 
 /* Through an index of 1 the beam goes on as it was, in the object's shadow alone. */
 TEST(index_one_is_a_beam) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_caustic_volume, v);
   abbe_volume_fill_statistics done;
-  load_text(ORB("air"), &scene);
-  const abbe_volume_fill_desc desc = {.object = 1,
-                                      .nodes = 12,
-                                      .region = {.kind = ABBE_REGION_GRID, .side = 12},
-                                      .photons = SANITIZED ? 1 << 13 : 1 << 15,
-                                      .threads = 2};
-  fill_volume(&scene, &desc, &v, &done);
+  OWNED(abbe_scene, scene) = scene_of(ORB("air"));
+  const abbe_volume_fill_desc desc =
+      FIELDS(.object = 1, .nodes = 12, .region = {.kind = ABBE_REGION_GRID, .side = 12},
+             .photons = SANITIZED ? 1 << 13 : 1 << 15, .threads = 2);
+  FILLED(abbe_caustic_volume, v, fill_volume(&scene, &desc, &v, &done));
   size_t seen = 0;
   for (size_t node = 0; node < 12; node += 3)
     for (size_t cell = 0; cell < v.region.cells; cell++) {
@@ -101,22 +92,17 @@ static void trace_layer(abbe_scene *scene, double middle, double height, size_t 
   view.far = 2;
   abbe_map_layout_make(&view, &layout);
   for (int f = 0; f < FLOORS; f++) {
-    const abbe_trace_desc desc = {.no_picture = true,
-                                  .map_width = side,
-                                  .map_height = side,
-                                  .layout = &layout,
-                                  .photons = BALL_PHOTONS,
-                                  .seed = (uint32_t)f + 1,
-                                  .threads = 2};
+    const abbe_trace_desc desc =
+        FIELDS(.no_picture = true, .map_width = side, .map_height = side, .layout = &layout,
+               .photons = BALL_PHOTONS, .seed = (uint32_t)f + 1, .threads = 2);
     abbe_object *floor = &scene->object[0];
     const double at = middle + ((f + 0.5) / FLOORS - 0.5) * height;
     for (size_t i = 0; i < floor->mesh.vertex_count; i++) floor->mesh.position[i][2] = at;
     floor->exact.parallelogram[0][2] = at;
     floor->min[2] = floor->max[2] = at;
-    abbe_tracer *tracer = make_tracer(scene, &desc);
-    OWNED(abbe_image, map) = {0};
+    HELD(abbe_tracer, tracer) = make_tracer(scene, &desc);
     run_passes(tracer, 4);
-    OK(abbe_tracer_map(tracer, &map, &error));
+    MADE(abbe_image, map, abbe_tracer_map(tracer, &map, &error));
     const size_t y = abbe_image_find_channel(&map, "Y"),
                  e = abbe_image_find_channel(&map, "stderr.Y");
     for (size_t i = 0; i < side * side; i++) {
@@ -125,7 +111,6 @@ static void trace_layer(abbe_scene *scene, double middle, double height, size_t 
       sum[i] += (double)map.data[i * map.channels + y] / area / FLOORS;
       square[i] += pow((double)map.data[i * map.channels + e] / area / FLOORS, 2);
     }
-    abbe_tracer_free(tracer);
   }
 }
 
@@ -133,19 +118,14 @@ static void trace_layer(abbe_scene *scene, double middle, double height, size_t 
  * it, within four standard errors of both. */
 TEST(a_ball_is_as_the_tracer_has_it) {
   enum { SIDE = 12, LAYERS_END = SANITIZED ? 3 : 4 };
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_caustic_volume, v);
   abbe_volume_fill_statistics done;
-  load_text(ORB("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(ORB("crown"));
   const double down[3] = {0, 0, -1};
   memcpy(scene.light[0].direction, down, sizeof down);
-  const abbe_volume_fill_desc desc = {.object = 1,
-                                      .nodes = 1,
-                                      .region = {.kind = ABBE_REGION_GRID, .side = SIDE},
-                                      .photons = BALL_PHOTONS,
-                                      .passes = 8,
-                                      .threads = 2};
-  fill_volume(&scene, &desc, &v, &done);
+  const abbe_volume_fill_desc desc =
+      FIELDS(.object = 1, .nodes = 1, .region = {.kind = ABBE_REGION_GRID, .side = SIDE},
+             .photons = BALL_PHOTONS, .passes = 8, .threads = 2);
+  FILLED(abbe_caustic_volume, v, fill_volume(&scene, &desc, &v, &done));
   const double half = v.region.desc.outer, cell = 2 * half / SIDE;
   for (size_t layer = 2; layer < LAYERS_END; layer++) { /* below the ball, past the focus */
     double sum[SIDE * SIDE] = {0}, square[SIDE * SIDE] = {0}, all = 0, both = 0;
@@ -166,18 +146,13 @@ TEST(a_ball_is_as_the_tracer_has_it) {
 
 /* Without receivers in the way every shell beyond the object has all the flux that left it. */
 TEST(shells_have_the_flux_of_the_ledger) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_caustic_volume, v);
   abbe_volume_fill_statistics done;
-  load_text(ORB("murk"), &scene);
-  const abbe_volume_fill_desc desc = {
-      .object = 1,
-      .nodes = 12,
-      .region = {.kind = ABBE_REGION_GEODESIC, .levels = 4, .shells = 8},
-      .photons = 1 << 14,
-      .passes = 2,
-      .threads = 2};
-  fill_volume(&scene, &desc, &v, &done);
+  OWNED(abbe_scene, scene) = scene_of(ORB("murk"));
+  const abbe_volume_fill_desc desc =
+      FIELDS(.object = 1, .nodes = 12,
+             .region = {.kind = ABBE_REGION_GEODESIC, .levels = 4, .shells = 8}, .photons = 1 << 14,
+             .passes = 2, .threads = 2);
+  FILLED(abbe_caustic_volume, v, fill_volume(&scene, &desc, &v, &done));
   assert_near(done.outflow[0], 1, 0.01); /* radial parts in the cells' middles */
   assert_near(done.outflow[1], 1, 0.01);
   assert_true(done.ledger.absorbed > 0.01 * done.ledger.reached);
@@ -186,16 +161,13 @@ TEST(shells_have_the_flux_of_the_ledger) {
 }
 
 TEST(threads_change_nothing) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_caustic_volume v[3];
   abbe_volume_fill_statistics done;
-  load_text(ORB("crown"), &scene);
-  abbe_volume_fill_desc desc = {.object = 1,
-                                .nodes = 1,
-                                .kind = ABBE_VOLUME_PRINTED,
-                                .region = {.kind = ABBE_REGION_OCTAHEDRAL, .side = 16, .shells = 8},
-                                .photons = 50000,
-                                .passes = 1};
+  OWNED(abbe_scene, scene) = scene_of(ORB("crown"));
+  abbe_volume_fill_desc desc =
+      FIELDS(.object = 1, .nodes = 1, .kind = ABBE_VOLUME_PRINTED,
+             .region = {.kind = ABBE_REGION_OCTAHEDRAL, .side = 16, .shells = 8}, .photons = 50000,
+             .passes = 1);
   for (size_t i = 0; i < 3; i++) {
     desc.threads = i == 0 ? 1 : 2;
     desc.seed = i == 2;
@@ -209,11 +181,10 @@ TEST(threads_change_nothing) {
 }
 
 TEST(requests) {
-  OWNED(abbe_scene, scene) = {0};
   OWNED(abbe_caustic_volume, v);
   abbe_volume_fill_statistics done;
   int calls = 0;
-  load_text(ORB("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(ORB("crown"));
   abbe_volume_fill_desc desc = {.object = 0, .photons = 1000, .passes = 1};
   REFUSED(ABBE_INVALID_ARGUMENT, "receiver", abbe_volume_fill(&scene, &desc, &v, &done, &error));
   abbe_scene dark = scene;

@@ -5,19 +5,16 @@
 #include "validation/volume/lone_object.h"
 
 TEST(a_ball_takes_its_volume) {
-  OWNED(abbe_scene, scene) = {0};
-  abbe_geometry g;
-  OWNED(abbe_volume_region, r);
   const double radius = 0.05, centre[3] = {0, 0, 0.1};
-  load_text(CAMERA POINT_LIGHT FLOOR "- {name: ball, shape: sphere, radius: 0.05, levels: 3, "
-                                     "material: flat, transform: [{translate: [0, 0, 0.1]}]}\n",
-            &scene);
+  OWNED(abbe_scene, scene) =
+      scene_of(CAMERA POINT_LIGHT FLOOR "- {name: ball, shape: sphere, radius: 0.05, levels: 3, "
+                                        "material: flat, transform: [{translate: [0, 0, 0.1]}]}\n");
   abbe_scene alone = scene;
   alone.object = &scene.object[1];
   alone.object_count = 1;
   const abbe_region_desc desc = {.kind = ABBE_REGION_GRID, .side = 20, .outer = 2 * radius};
-  OK(abbe_geometry_make(&alone, &g, &error));
-  OK(abbe_volume_region_make(&desc, &r, &error));
+  MADE(abbe_geometry, g, abbe_geometry_make(&alone, &g, &error));
+  MADE(abbe_volume_region, r, abbe_volume_region_make(&desc, &r, &error));
   FREED float *share = calloc(r.cells, sizeof *share);
   OK(abbe_volume_space_measure(&g, &r, centre, radius, 400000, share, &error));
   double taken = 0;
@@ -33,5 +30,4 @@ TEST(a_ball_takes_its_volume) {
     taken += (1 - (double)share[cell]) * abbe_volume_region_volume(&r, cell);
   }
   assert_near(taken / (4 * ABBE_PI / 3 * pow(radius, 3)), 1, 0.01);
-  abbe_geometry_free(&g);
 }

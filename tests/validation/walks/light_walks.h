@@ -34,7 +34,7 @@ static inline void make(const char *text, const abbe_physics *physics, fixture *
   static const abbe_physics full = {0};
   double lambda_nm[STEPS + 1];
   memset(f, 0, sizeof *f);
-  load_text(text, &f->scene);
+  f->scene = scene_of(text);
   OK(abbe_geometry_make(&f->scene, &f->geometry, &error));
   for (int k = 0; k <= STEPS; k++) lambda_nm[k] = 500 + 100.0 * k / STEPS;
   OK(abbe_media_make(&f->geometry, lambda_nm, STEPS, &f->media, &error));
@@ -43,7 +43,7 @@ static inline void make(const char *text, const abbe_physics *physics, fixture *
                           &f->walk, &error));
 }
 
-static inline void drop(fixture *f) {
+static inline void fixture_free(fixture *f) {
   abbe_light_walk_free(f->walk);
   abbe_media_free(&f->media);
   abbe_mirrors_free(&f->mirrors);

@@ -11,7 +11,7 @@ static abbe_scene scene;
 static abbe_geometry geometry;
 
 static void setup(void) {
-  load_text(TILTED POINT_LIGHT FLOOR BALL("flat"), &scene);
+  scene = scene_of(TILTED POINT_LIGHT FLOOR BALL("flat"));
   OK(abbe_geometry_make(&scene, &geometry, &error));
 }
 

@@ -31,10 +31,8 @@ static double passes(const fixture *f, const abbe_film_layer *layer, size_t coun
 static void check_pane(const char *coating, const abbe_film_layer *layer, size_t count, bool both,
                        unsigned splits) {
   enum { BATCHES = 64 };
-  char text[2048];
   FREED fixture *f = malloc(sizeof *f);
-  snprintf(text, sizeof text, SCENE SLAB("n-bk7, coating: %s"), coating);
-  make(text, NULL, f);
+  make(printed(SCENE SLAB("n-bk7, coating: %s"), coating), NULL, f);
   abbe_light_walk_split(f->walk, splits);
   const double from[3] = {-0.05, 0.01, 0.5}, d[3] = {0.6, 0, -0.8};
   double landed = 0, sent = 0;
@@ -58,7 +56,7 @@ static void check_pane(const char *coating, const abbe_film_layer *layer, size_t
   else
     assert_near(l->absorbed, 0, 1e-5 * sent);
   assert_near(l->lost + l->trapped, 0, 0);
-  drop(f);
+  fixture_free(f);
 }
 
 TEST(a_coated_pane_passes_what_its_films_do) {
@@ -76,15 +74,13 @@ TEST(a_coated_pane_passes_what_its_films_do) {
  * darker. */
 static double furnace(const char *material, const char *coating) {
   char text[2048];
-  abbe_scene scene;
-  snprintf(
-      text, sizeof text,
-      "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.3], fov: 6}\nbackground: 1\nlights: [{name: "
-      "far, kind: point, position: [3, 3, 3], intensity: 1}]\nobjects:\n" SLAB(
-          "%s, coating: %s") "- {name: floor, shape: rectangle, width: 2, height: 2, "
-                             "reflectance: 0}\n",
-      material, coating);
-  load_text(text, &scene);
+  snprintf(text, sizeof text,
+           "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.3], fov: 6}\nbackground: 1\nlights: "
+           "[{name: far, kind: point, position: [3, 3, 3], intensity: 1}]\nobjects:\n" SLAB(
+               "%s, coating: %s") "- {name: floor, shape: rectangle, width: 2, height: 2, "
+                                  "reflectance: 0}\n",
+           material, coating);
+  OWNED(abbe_scene, scene) = scene_of(text);
   scene.object_count = 1; /* no floor */
   abbe_tracer *tracer = make_tracer(&scene, &(abbe_trace_desc){.width = 8,
                                                                .height = 8,
@@ -92,14 +88,11 @@ static double furnace(const char *material, const char *coating) {
                                                                .threads = 1,
                                                                .photons = 16,
                                                                .space = ABBE_RGB_SPACE_XYZ});
-  abbe_image image = {0};
   run_passes(tracer, 64);
-  OK(abbe_tracer_picture(tracer, &image, &error));
+  MADE(abbe_image, image, abbe_tracer_picture(tracer, &image, &error));
   const double mean = channel_sum(&image, "Y") / 64;
-  abbe_image_free(&image);
   abbe_tracer_free(tracer);
   scene.object_count = 2;
-  abbe_scene_free(&scene);
   return mean;
 }
 
@@ -114,17 +107,15 @@ TEST(a_furnace_of_coated_stones_is_even) {
 TEST(photons_through_coated_crystals_are_all_accounted_for) {
   static const char *const stones[] = {"calcite", "topaz"};
   for (int i = 0; i < 2; i++) {
-    char text[2048];
     FREED fixture *f = malloc(sizeof *f);
-    snprintf(text, sizeof text, SCENE SLAB("%s, coating: {layers: [[[0.42, 2.4], 10], [2.4, 60]]}"),
-             stones[i]);
-    make(text, NULL, f);
+    make(printed(SCENE SLAB("%s, coating: {layers: [[[0.42, 2.4], 10], [2.4, 60]]}"), stones[i]),
+         NULL, f);
     const double from[3] = {-0.05, 0.01, 0.5}, d[3] = {0.6, 0, -0.8};
     shoot(f, from, d, 16);
     const abbe_light_ledger *l = &f->ledger;
     assert_near(l->reached, (double)f->photons, 1e-6 * (double)f->photons);
     assert_near(l->deposited + l->absorbed + l->missed, l->reached, 1e-5 * l->reached);
     assert_true(l->absorbed > 0.05 * l->reached && l->lost == 0);
-    drop(f);
+    fixture_free(f);
   }
 }

@@ -22,12 +22,11 @@ static const double n_o = 1.66, n_e = 1.48;
 /* As make, with a crystal's table. */
 static void make_table(const char *table, const char *text, const abbe_physics *physics,
                        fixture *f) {
-  char folder[] = "/tmp/abbe-test-crystal-XXXXXX", path[64], all[4096];
+  char folder[] = "/tmp/abbe-test-crystal-XXXXXX";
   assert_non_null(mkdtemp(folder));
-  snprintf(path, sizeof path, "%s/table.yaml", folder);
+  const char *path = printed("%s/table.yaml", folder);
   OK(abbe_file_write(path, table, strlen(table), &error));
-  snprintf(all, sizeof all, "materials: %s\n%s", path, text);
-  make(all, physics, f);
+  make(printed("materials: %s\n%s", path, text), physics, f);
   unlink(path);
   rmdir(folder);
 }
@@ -68,7 +67,7 @@ TEST(a_beam_becomes_two) {
   }
   assert_near(f->ledger.reached, (double)photons, 1e-6 * (double)photons);
   assert_near(f->ledger.lost, 0, 0);
-  drop(f);
+  fixture_free(f);
 }
 
 #define PLEOCHROIC                                                                                 \
@@ -76,13 +75,25 @@ TEST(a_beam_becomes_two) {
            "     extraordinary: {attenuation_per_m: [[500, 4]]}}")
 #define MIST_BESIDE "medium: {scattering: 1, box: [[5, 5, 5], [6, 6, 6]]}\n"
 
-static void check_two_exponentials(const char *scene) {
+/* What a slab of 0.1 m passes of light that enters it head on in two halves, with all inner
+ * reflections. */
+static double two_exponentials(const double n[2], const double per_m[2]) {
+  double passed = 0;
+  for (int wave = 0; wave < 2; wave++) {
+    const double r = pow((n[wave] - 1) / (n[wave] + 1), 2), tau = exp(-per_m[wave] * 0.1);
+    passed += 0.5 * (1 - r) * (1 - r) * tau / (1 - r * r * tau * tau);
+  }
+  return passed;
+}
+
+/* Straight on, and nowhere else. */
+static void check_two_exponentials(const char *table, const char *scene, const double n[2],
+                                   const double per_m[2]) {
   enum { BATCHES = 64 };
-  static const double per_m[2] = {30, 4}, thick = 0.1, n[2] = {1.66, 1.48};
   FREED fixture *f = malloc(sizeof *f);
-  make_table(PLEOCHROIC, scene, NULL, f);
+  make_table(table, scene, NULL, f);
   const double from[3] = {0.02, 0.01, 0.5}, down[3] = {0, 0, -1};
-  double landed = 0, wanted = 0, sent = 0;
+  double landed = 0, sent = 0;
   for (uint32_t b = 0; b < BATCHES; b++) {
     for (uint32_t i = 0; i < BATCH; i++) f->photon[i] = photon_of(f, from, down, i);
     for (uint32_t i = 0; i < BATCH; i++) sent += (double)f->photon[i].flux;
@@ -91,25 +102,26 @@ static void check_two_exponentials(const char *scene) {
     for (size_t i = 0; i < hits; i++) {
       double p[3];
       abbe_geometry_to_world(&f->geometry, f->hit[i].p, p);
-      if (p[2] < 0.1) landed += (double)f->hit[i].flux;
+      if (p[2] > 0.1) continue;
+      landed += (double)f->hit[i].flux;
+      assert_near(p[0], from[0], 1e-5);
+      assert_near(p[1], from[1], 1e-5);
     }
   }
-  for (int wave = 0; wave < 2; wave++) {
-    const double r = pow((n[wave] - 1) / (n[wave] + 1), 2), tau = exp(-per_m[wave] * thick);
-    wanted += 0.5 * (1 - r) * (1 - r) * tau / (1 - r * r * tau * tau);
-  }
-  assert_near(landed / sent, wanted, 4 * 0.35 / sqrt(BATCHES * BATCH));
+  assert_near(landed / sent, two_exponentials(n, per_m), 4 * 0.35 / sqrt(BATCHES * BATCH));
   assert_near(f->ledger.reached,
               f->ledger.deposited + f->ledger.absorbed + f->ledger.missed + f->ledger.trapped,
               1e-5 * f->ledger.reached);
-  drop(f);
+  fixture_free(f);
 }
+
+static const double calcite_n[2] = {1.66, 1.48}, pleochroic_per_m[2] = {30, 4};
 
 /* Through a slab whose axis lies in its face head on, each wave with its own loss: two
  * exponentials, and not one of the mean. Mist that no light meets changes nothing. */
 TEST(a_pleochroic_slab_passes_two_exponentials) {
-  check_two_exponentials(CALCITE("[1, 1, 0]"));
-  check_two_exponentials(MIST_BESIDE CALCITE("[1, 1, 0]"));
+  check_two_exponentials(PLEOCHROIC, CALCITE("[1, 1, 0]"), calcite_n, pleochroic_per_m);
+  check_two_exponentials(PLEOCHROIC, MIST_BESIDE CALCITE("[1, 1, 0]"), calcite_n, pleochroic_per_m);
 }
 
 #define THREE                                                                                      \
@@ -126,45 +138,19 @@ TEST(a_pleochroic_slab_passes_two_exponentials) {
 /* Head on into a slab of three indices, x along the normal: the waves have the other two indices
  * and absorptions, and neither makes any of the other. */
 TEST(a_biaxial_slab_passes_both_waves) {
-  enum { BATCHES = 64 };
-  static const double per_m[2] = {3, 1}, thick = 0.1, n[2] = {1.68, 1.75};
-  fixture *f = malloc(sizeof *f);
-  make_table(THREE, BIAXIAL("[0, 0, 1]", "[1, 1, 0]"), NULL, f);
-  const double from[3] = {0.02, 0.01, 0.5}, down[3] = {0, 0, -1};
-  double landed = 0, wanted = 0, sent = 0;
-  for (uint32_t b = 0; b < BATCHES; b++) {
-    for (uint32_t i = 0; i < BATCH; i++) f->photon[i] = photon_of(f, from, down, i);
-    for (uint32_t i = 0; i < BATCH; i++) sent += (double)f->photon[i].flux;
-    const size_t hits =
-        abbe_light_walk_run(f->walk, &f->scene.light[0], b, f->photon, BATCH, f->hit, &f->ledger);
-    for (size_t i = 0; i < hits; i++) {
-      double p[3];
-      abbe_geometry_to_world(&f->geometry, f->hit[i].p, p);
-      if (p[2] > 0.1) continue;
-      landed += (double)f->hit[i].flux;
-      assert_near(p[0], from[0], 1e-5);
-      assert_near(p[1], from[1], 1e-5);
-    }
-  }
-  for (int wave = 0; wave < 2; wave++) {
-    const double r = pow((n[wave] - 1) / (n[wave] + 1), 2), tau = exp(-per_m[wave] * thick);
-    wanted += 0.5 * (1 - r) * (1 - r) * tau / (1 - r * r * tau * tau);
-  }
-  assert_near(landed / sent, wanted, 4 * 0.35 / sqrt(BATCHES * BATCH));
-  drop(f);
-  free(f);
+  check_two_exponentials(THREE, BIAXIAL("[0, 0, 1]", "[1, 1, 0]"), (const double[2]){1.68, 1.75},
+                         (const double[2]){3, 1});
 }
 
 TEST(the_ledger_of_three_indices_closes) {
-  fixture *f = malloc(sizeof *f);
+  FREED fixture *f = malloc(sizeof *f);
   make_table(THREE, BIAXIAL("[1, 0.3, 0.2]", "[0.1, 0.3, 1]"), NULL, f);
   flood(f, 40);
   const abbe_light_ledger *l = &f->ledger;
   const double parts = l->deposited + l->absorbed + l->missed + l->trapped + l->lost;
   assert_near(parts / l->reached, 1, 1e-5);
   assert_true(l->lost < 1e-3 * l->reached);
-  drop(f);
-  free(f);
+  fixture_free(f);
 }
 
 /* All that reaches the block is somewhere, whatever faces it meets and how often it is split. */
@@ -178,7 +164,7 @@ TEST(the_ledger_closes) {
     const double parts = l->deposited + l->absorbed + l->missed + l->trapped + l->lost;
     assert_near(parts / l->reached, 1, 1e-5);
     assert_true(l->lost < 1e-3 * l->reached);
-    drop(f);
+    fixture_free(f);
   }
 }
 
@@ -191,7 +177,7 @@ TEST(splitting_biases_nothing) {
     abbe_light_walk_split(f->walk, i == 0 ? 0 : 3);
     flood(f, 100);
     landed[i] = f->ledger.deposited / f->ledger.reached;
-    drop(f);
+    fixture_free(f);
   }
   assert_near(landed[1], landed[0], 5e-3);
 }
@@ -205,45 +191,50 @@ TEST(matched_physics_knows_one_index) {
   const double from[3] = {0.02, 0.01, 0.5}, down[3] = {0, 0, -1};
   const double r = pow((n_o - 1) / (n_o + 1), 2);
   check_share((double)shoot(f, from, down, 32), 32.0 * BATCH, (1 - r) / (1 + r));
-  drop(f);
+  fixture_free(f);
 }
 
 /* ---- the eye ---- */
+
+/* A bright floor under a slab of the table, seen from straight above through a narrow angle. */
+static abbe_image slab_seen(const char *table, const char *around, const char *objects, int wide,
+                            int rows, int passes) {
+  char folder[] = "/tmp/abbe-test-crystal-XXXXXX";
+  assert_non_null(mkdtemp(folder));
+  const char *path = printed("%s/table.yaml", folder);
+  OK(abbe_file_write(path, table, strlen(table), &error));
+  const char *text = printed(
+      "materials: %s\n%scamera: {eye: [0, 0, 40], target: [0, 0, 0], up: [0, 1, 0], fov: 0.1, "
+      "size: [%d, %d]}\nambient: 3.14159265\n"
+      "lights: [{name: lamp, kind: point, position: [0, 0, 200], intensity: 1.0e-12}]\n"
+      "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 1}\n%s",
+      path, around, wide, rows, objects);
+  MADE(abbe_scene, scene, abbe_scene_parse(text, strlen(text), "scene", NULL, &scene, &error));
+  const abbe_trace_desc desc =
+      FIELDS(.no_map = true, .space = ABBE_RGB_SPACE_XYZ, .width = (size_t)wide,
+             .height = (size_t)rows, .photons = 1024, .threads = 1);
+  abbe_tracer *tracer = NULL;
+  abbe_image picture = {0};
+  OK(abbe_tracer_make(&scene, &desc, &tracer, &error));
+  for (int p = 0; p < passes; p++) OK(abbe_tracer_pass(tracer, NULL, &error));
+  OK(abbe_tracer_picture(tracer, &picture, &error));
+  abbe_tracer_free(tracer);
+  unlink(path);
+  rmdir(folder);
+  return picture;
+}
 
 /* A dark line on a bright floor under the block, seen straight from above, is two lines of half the
  * depth, as far apart as the closed form says. */
 TEST(a_line_is_seen_double) {
   enum { WIDE = 48, ROWS = 8 };
-  char folder[] = "/tmp/abbe-test-crystal-XXXXXX", path[64], text[2048];
-  assert_non_null(mkdtemp(folder));
-  snprintf(path, sizeof path, "%s/table.yaml", folder);
-  OK(abbe_file_write(path, TABLE, strlen(TABLE), &error));
-  snprintf(text, sizeof text,
-           "materials: %s\n"
-           "camera: {eye: [0, 0, 40], target: [0, 0, 0], up: [0, 1, 0], fov: 0.1, "
-           "size: [%d, %d]}\n"
-           "ambient: 3.14159265\nbackground: 1\n"
-           "lights: [{name: lamp, kind: point, position: [0, 0, 200], intensity: 1.0e-12}]\n"
-           "objects:\n"
-           "- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 1}\n"
-           "- {name: line, shape: rectangle, width: 0.02, height: 2, reflectance: 0,\n"
-           "   transform: [{translate: [0, 0, 0.001]}]}\n"
-           "- {name: slab, shape: box, size: [2, 2, 1], material: spar, axis: [1, 0, 1],\n"
-           "   transform: [{translate: [0, 0, 0.6]}]}\n",
-           path, WIDE, ROWS);
-  abbe_scene scene;
-  OK(abbe_scene_parse(text, strlen(text), "scene", NULL, &scene, &error));
-  abbe_tracer *tracer = NULL;
-  const abbe_trace_desc desc = {.no_map = true,
-                                .space = ABBE_RGB_SPACE_XYZ,
-                                .width = WIDE,
-                                .height = ROWS,
-                                .photons = 1024,
-                                .threads = 1};
-  OK(abbe_tracer_make(&scene, &desc, &tracer, &error));
-  for (int p = 0; p < 24; p++) OK(abbe_tracer_pass(tracer, NULL, &error));
-  abbe_image picture = {0};
-  OK(abbe_tracer_picture(tracer, &picture, &error));
+  OWNED(abbe_image, picture) =
+      slab_seen(TABLE, "background: 1\n",
+                "- {name: line, shape: rectangle, width: 0.02, height: 2, reflectance: 0,\n"
+                "   transform: [{translate: [0, 0, 0.001]}]}\n"
+                "- {name: slab, shape: box, size: [2, 2, 1], material: spar, axis: [1, 0, 1],\n"
+                "   transform: [{translate: [0, 0, 0.6]}]}\n",
+                WIDE, ROWS, 24);
   const size_t y = abbe_image_find_channel(&picture, "Y");
   const double pixel = 2 * 40 * tan(0.05 / 180 * 3.14159265358979) / ROWS; /* m on the floor */
   const double shift = tan(abbe_uniaxial_walk_off(n_o, n_e, sqrt(0.5))), around = 0.04;
@@ -264,64 +255,26 @@ TEST(a_line_is_seen_double) {
     const double r = pow((n[line] - 1) / (n[line] + 1), 2);
     assert_near(dark[line] / 0.02, 0.5 * pow(1 - r, 2), 0.03);
   }
-  abbe_image_free(&picture);
-  abbe_tracer_free(tracer);
-  abbe_scene_free(&scene);
-  unlink(path);
-  rmdir(folder);
 }
 
 /* Mean Y of a bright floor through a pleochroic slab, seen from straight above. */
 static double floor_through_slab(const char *medium) {
   enum { SIDE = 16 };
-  char folder[] = "/tmp/abbe-test-crystal-XXXXXX", path[64], text[2048];
-  assert_non_null(mkdtemp(folder));
-  snprintf(path, sizeof path, "%s/table.yaml", folder);
-  OK(abbe_file_write(path, PLEOCHROIC, strlen(PLEOCHROIC), &error));
-  snprintf(text, sizeof text,
-           "materials: %s\n%s"
-           "camera: {eye: [0, 0, 40], target: [0, 0, 0], up: [0, 1, 0], fov: 0.1, "
-           "size: [%d, %d]}\n"
-           "ambient: 3.14159265\n"
-           "lights: [{name: lamp, kind: point, position: [0, 0, 200], intensity: 1.0e-12}]\n"
-           "objects:\n"
-           "- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 1}\n"
-           "- {name: slab, shape: box, size: [2, 2, 0.1], material: spar, axis: [1, 1, 0],\n"
-           "   transform: [{translate: [0, 0, 0.1]}]}\n",
-           path, medium, SIDE, SIDE);
-  abbe_scene scene;
-  OK(abbe_scene_parse(text, strlen(text), "scene", NULL, &scene, &error));
-  abbe_tracer *tracer = NULL;
-  const abbe_trace_desc desc = {.no_map = true,
-                                .space = ABBE_RGB_SPACE_XYZ,
-                                .width = SIDE,
-                                .height = SIDE,
-                                .photons = 1024,
-                                .threads = 1};
-  OK(abbe_tracer_make(&scene, &desc, &tracer, &error));
-  for (int p = 0; p < 8; p++) OK(abbe_tracer_pass(tracer, NULL, &error));
-  abbe_image picture = {0};
-  OK(abbe_tracer_picture(tracer, &picture, &error));
+  OWNED(abbe_image, picture) =
+      slab_seen(PLEOCHROIC, medium,
+                "- {name: slab, shape: box, size: [2, 2, 0.1], material: spar, axis: [1, 1, 0],\n"
+                "   transform: [{translate: [0, 0, 0.1]}]}\n",
+                SIDE, SIDE, 8);
   const size_t y = abbe_image_find_channel(&picture, "Y");
   double sum = 0;
   for (size_t i = 0; i < SIDE * SIDE; i++) sum += (double)picture.data[i * picture.channels + y];
-  abbe_image_free(&picture);
-  abbe_tracer_free(tracer);
-  abbe_scene_free(&scene);
-  unlink(path);
-  rmdir(folder);
   return sum / (SIDE * SIDE);
 }
 
 /* What the camera sees through it is two exponentials too, whether or not there is mist somewhere.
  * What the floor and the slab send to and fro between them is below 2 % of it. */
 TEST(a_pleochroic_slab_shows_two_exponentials) {
-  double wanted = 0;
-  const double per_m[2] = {30, 4}, n[2] = {n_o, n_e};
-  for (int wave = 0; wave < 2; wave++) {
-    const double r = pow((n[wave] - 1) / (n[wave] + 1), 2), tau = exp(-0.1 * per_m[wave]);
-    wanted += 0.5 * (1 - r) * (1 - r) * tau / (1 - r * r * tau * tau);
-  }
+  const double wanted = two_exponentials(calcite_n, pleochroic_per_m);
   assert_near(floor_through_slab(""), wanted, 0.03 * wanted);
   assert_near(floor_through_slab(MIST_BESIDE), wanted, 0.03 * wanted);
 }

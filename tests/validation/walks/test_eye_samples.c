@@ -15,7 +15,7 @@ typedef struct fixture {
 } fixture;
 
 static void share(const char *text, double rays, size_t threads, fixture *f) {
-  load_text(text, &f->scene);
+  f->scene = scene_of(text);
   f->tracer = make_tracer(
       &f->scene,
       &(abbe_trace_desc){
@@ -23,7 +23,7 @@ static void share(const char *text, double rays, size_t threads, fixture *f) {
   abbe_eye_samples_share(&f->tracer->geometry, &f->tracer->camera, rays, threads, f->samples);
 }
 
-static void drop(fixture *f) {
+static void fixture_free(fixture *f) {
   abbe_tracer_free(f->tracer);
   abbe_scene_free(&f->scene);
 }
@@ -37,8 +37,7 @@ static size_t count(const fixture *f, uint8_t samples) {
 
 /* Every pixel that may show the ball has its share, what is well off it has one. */
 TEST(glass_takes_more_samples) {
-  fixture f;
-  share(CAMERA POINT_LIGHT FLOOR BUBBLE, 1e9, 1, &f);
+  FILLED(fixture, f, share(CAMERA POINT_LIGHT FLOOR BUBBLE, 1e9, 1, &f));
   size_t most = count(&f, ABBE_EYE_MOST_SAMPLES), seen = 0;
   assert_int_equal(most + count(&f, 1), SIDE * SIDE);
   for (size_t pixel = 0; pixel < SIDE * SIDE; pixel++)
@@ -51,13 +50,11 @@ TEST(glass_takes_more_samples) {
       break;
     }
   assert_true(seen > 40 && most < 2 * seen);
-  drop(&f);
 }
 
 /* As many as the rays allow, and one where they allow none. */
 TEST(rays_are_shared_out) {
-  fixture f;
-  share(CAMERA POINT_LIGHT FLOOR BUBBLE, 1e9, 1, &f);
+  FILLED(fixture, f, share(CAMERA POINT_LIGHT FLOOR BUBBLE, 1e9, 1, &f));
   double pixels = (double)count(&f, ABBE_EYE_MOST_SAMPLES);
   for (int samples = 2; samples < ABBE_EYE_MOST_SAMPLES; samples += 5) {
     double rays = (samples + 0.4) * 32 * pixels / (1 + 4 * pixels / (SIDE * SIDE));
@@ -66,21 +63,15 @@ TEST(rays_are_shared_out) {
   }
   abbe_eye_samples_share(&f.tracer->geometry, &f.tracer->camera, 10, 1, f.samples);
   assert_int_equal(count(&f, 1), SIDE * SIDE);
-  drop(&f);
 }
 
 TEST(no_glass_takes_one) {
-  fixture f;
-  share(CAMERA POINT_LIGHT FLOOR, 1e9, 1, &f);
+  FILLED(fixture, f, share(CAMERA POINT_LIGHT FLOOR, 1e9, 1, &f));
   assert_int_equal(count(&f, 1), SIDE * SIDE);
-  drop(&f);
 }
 
 TEST(threads_do_not_matter) {
-  fixture a, b;
-  share(CAMERA POINT_LIGHT FLOOR RING("crown"), 1e9, 1, &a);
-  share(CAMERA POINT_LIGHT FLOOR RING("crown"), 1e9, 3, &b);
+  FILLED(fixture, a, share(CAMERA POINT_LIGHT FLOOR RING("crown"), 1e9, 1, &a));
+  FILLED(fixture, b, share(CAMERA POINT_LIGHT FLOOR RING("crown"), 1e9, 3, &b));
   assert_memory_equal(a.samples, b.samples, sizeof a.samples);
-  drop(&a);
-  drop(&b);
 }

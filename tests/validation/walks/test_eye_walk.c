@@ -25,7 +25,7 @@ typedef struct fixture {
 } fixture;
 
 static void make_with(const char *text, const abbe_trace_desc *desc, size_t objects, fixture *f) {
-  load_text(text, &f->scene);
+  f->scene = scene_of(text);
   f->objects = f->scene.object_count;
   if (objects > 0) f->scene.object_count = objects; /* the last ones are not there */
   f->tracer = make_tracer(&f->scene, desc);
@@ -38,7 +38,7 @@ static void make(const char *text, fixture *f) {
             0, f);
 }
 
-static void drop(fixture *f) {
+static void fixture_free(fixture *f) {
   abbe_tracer_free(f->tracer);
   f->scene.object_count = f->objects;
   abbe_scene_free(&f->scene);
@@ -67,13 +67,11 @@ static void look(const fixture *f, uint32_t passes, double mean[3], double error
 
 /* The picture is `radiance` times the light's white, to `share` of it. */
 static void check_radiance(const char *text, double radiance, double share) {
-  fixture f;
   double mean[3], error[3];
-  make(text, &f);
+  FILLED(fixture, f, make(text, &f));
   look(&f, 1, mean, error);
   for (int k = 0; k < 3; k++)
     assert_near(mean[k], radiance * (double)f.tracer->white[0][k], share * radiance + 1e-12);
-  drop(&f);
 }
 
 /* A matte floor of reflectance 1/2 returns E / (2 pi). */
@@ -96,13 +94,14 @@ TEST(spots_end_where_they_end) {
       char text[1024];
       /* the place seen lies off the spot's axis by 0.98 or 1.02 of the cone */
       double off = tan(cones[i] * ABBE_PI / 180 * (inside ? 0.98 : 1.02));
-      snprintf(text, sizeof text,
-               "materials: glass.yaml\ncamera: {eye: [0.1, 0, 1], target: [%.9g, 0, 0], up: [0, 1, "
-               "0], fov: 0.1, size: [1000, 1000]}\n" LIGHT(
-                   "kind: spot, position: [0.1, 0, 1], direction: [0, 0, -1], intensity: 3, cone: "
-                   "%g") FLOOR,
-               0.1 + off, cones[i]);
-      fixture f;
+      snprintf(
+          text, sizeof text,
+          "materials: glass.yaml\ncamera: {eye: [0.1, 0, 1], target: [%.9g, 0, 0], up: [0, 1, 0], "
+          "fov: 0.1, size: [1000, 1000]}\n" LIGHT(
+              "kind: spot, position: [0.1, 0, 1], direction: [0, 0, -1], intensity: 3, cone: %g")
+              FLOOR,
+          0.1 + off, cones[i]);
+      OWNED(fixture, f) = {0};
       double mean[3], error[3], cosine = cos(atan(off));
       make_with(text, &(abbe_trace_desc){.width = 1, .height = 1, .no_map = true, .threads = 1}, 0,
                 &f);
@@ -111,7 +110,6 @@ TEST(spots_end_where_they_end) {
       look(&f, 1, mean, error);
       assert_near(mean[1] / (double)f.tracer->white[0][1],
                   inside ? 3 * pow(cosine, 3) * 0.5 / ABBE_PI : 0, 1e-4);
-      drop(&f);
     }
 }
 
@@ -120,16 +118,14 @@ TEST(spots_end_where_they_end) {
  */
 TEST(a_disks_irradiance) {
   for (int i = 0; i < 2; i++) {
-    const char *text =
-        i ? DOWN LIGHT("kind: disk, position: [0.5, 0, 0.3], direction: [0, 0, -1], radius: 0.2, "
-                       "radiance: 5") FLOOR
-          : DOWN LIGHT("kind: disk, position: [0.1, 0, 0.3], direction: [0, 0, -1], radius: 0.2, "
-                       "radiance: 5") FLOOR;
+    const char *text = i ? DOWN LIGHT("kind: disk, position: [0.5, 0, 0.3], direction: [0, 0, -1], "
+                                      "radius: 0.2, radiance: 5") FLOOR
+                         : DOWN LIGHT("kind: disk, position: [0.1, 0, 0.3], direction: [0, 0, -1], "
+                                      "radius: 0.2, radiance: 5") FLOOR;
     double h = 0.3, x = i ? 0.4 : 0, r = 0.2, mean[3], error[3];
     double a = h * h + x * x + r * r;
     double share = 0.5 * (1 - (h * h + x * x - r * r) / sqrt(a * a - 4 * x * x * r * r));
-    fixture f;
-    make(text, &f);
+    FILLED(fixture, f, make(text, &f));
     /* from above the eye would see the lamp's dark back */
     float eye[3];
     abbe_geometry_to_frame(&f.tracer->geometry, (double[3]){0.1, 0, 0.2}, eye);
@@ -140,7 +136,6 @@ TEST(a_disks_irradiance) {
       assert_near(mean[k], 5 * share * 0.5 * white, 4 * error[k]);
       assert_true(error[k] < 0.02 * mean[k]);
     }
-    drop(&f);
   }
 }
 
@@ -169,11 +164,11 @@ static double polygon_irradiance(double (*corner)[3], size_t count, const double
 TEST(a_rectangles_irradiance) {
   const double c = cos(ABBE_PI / 6), s = sin(ABBE_PI / 6), at[] = {0.1, 0, 0};
   for (int i = 0; i < 2; i++) {
-    const char *text =
-        i ? DOWN LIGHT("kind: rectangle, position: [0.3, 0.1, 0.3], direction: [-1, 0, -1], width: "
-                       "0.2, height: 0.3, radiance: 5") FLOOR
-          : DOWN LIGHT("kind: rectangle, position: [0.3, 0.1, 0.3], direction: [0, 0, -1], width: "
-                       "0.4, height: 0.1, roll: 30, radiance: 5") FLOOR;
+    const char *text = i ? DOWN LIGHT("kind: rectangle, position: [0.3, 0.1, 0.3], direction: [-1, "
+                                      "0, -1], width: 0.2, height: 0.3, radiance: 5") FLOOR
+                         : DOWN LIGHT("kind: rectangle, position: [0.3, 0.1, 0.3], direction: [0, "
+                                      "0, -1], width: 0.4, height: 0.1, roll: 30, radiance: 5")
+                               FLOOR;
     /* z: the width along -x, as n is down and the height along y; turned from the one to the other.
      * Tilted: the width along -y and the height along z x n. */
     const double d = sqrt(0.5), wide[2][3] = {{-0.2 * c, 0.2 * s, 0}, {0, -0.1, 0}};
@@ -184,8 +179,7 @@ TEST(a_rectangles_irradiance) {
       for (int x = 0; x < 3; x++)
         corner[k][x] =
             (double[]){0.3, 0.1, 0.3}[x] + sign[k][0] * wide[i][x] + sign[k][1] * high[i][x];
-    fixture f;
-    make(text, &f);
+    FILLED(fixture, f, make(text, &f));
     float eye[3];
     abbe_geometry_to_frame(&f.tracer->geometry, (double[3]){0.1, 0, 0.1}, eye);
     memcpy(f.tracer->camera.eye, eye, sizeof eye);
@@ -196,7 +190,6 @@ TEST(a_rectangles_irradiance) {
                   4 * error[k]);
       assert_true(error[k] < 0.02 * mean[k]);
     }
-    drop(&f);
   }
 }
 
@@ -222,19 +215,15 @@ TEST(lamps_are_seen_from_the_front) {
 TEST(shadows) {
 #define SIDE_LIGHT LIGHT("kind: point, position: [0.5, 0, 0.4], intensity: 3")
   check_radiance(DOWN SIDE_LIGHT FLOOR LID("0.5"), 0, 0);
-  check_radiance(
-      DOWN SIDE_LIGHT FLOOR
-      "- {name: ball, shape: sphere, radius: 0.08, transform: [{translate: [0.3, 0, 0.2]}], "
-      "material: flat}\n",
-      0, 0);
+  check_radiance(DOWN SIDE_LIGHT FLOOR "- {name: ball, shape: sphere, radius: 0.08, transform: "
+                                       "[{translate: [0.3, 0, 0.2]}], material: flat}\n",
+                 0, 0);
   check_radiance(DOWN LIGHT("kind: point, position: [0.1, 0, -0.5], intensity: 3") FLOOR, 0, 0);
-  fixture f;
   double mean[3], error[3];
-  make(DOWN "ambient: 0.3\n" SIDE_LIGHT FLOOR LID("0.5"), &f);
+  FILLED(fixture, f, make(DOWN "ambient: 0.3\n" SIDE_LIGHT FLOOR LID("0.5"), &f));
   look(&f, 1, mean, error);
   /* ambient light is white in the picture's space: 1, 1, 1 */
   for (int k = 0; k < 3; k++) assert_near(mean[k], 0.3 * 0.5 / ABBE_PI, 1e-6);
-  drop(&f);
 }
 
 #define EVEN_SKY "background: 1\n" LIGHT("kind: point, position: [3, 3, 3], intensity: 1")
@@ -252,7 +241,7 @@ TEST(a_white_furnace) {
       assert_near(mean[k], 1, 4 * error[k]);
       assert_true(error[k] > 1e-5 && error[k] < (i ? 0.02 : 0.005));
     }
-    drop(&f);
+    fixture_free(&f);
   }
 }
 
@@ -261,11 +250,11 @@ TEST(a_white_furnace) {
 TEST(splitting_keeps_the_mean) {
   static const float least[] = {1, ABBE_EYE_LEAST_BRANCH, 1e-3f};
   double mean[3][3], error[3][3];
-  fixture f;
+  OWNED(fixture, f) = {0};
   make_with(
       DOWN "ambient: 0.5\n" LIGHT("kind: point, position: [0.5, 0, 0.4], intensity: 3") FLOOR
-      "- {name: stone, shape: brilliant, diameter: 0.2, transform: [{translate: [0.1, 0, "
-      "0.2]}], material: dense}\n",
+      "- {name: stone, shape: brilliant, diameter: 0.2, transform: [{translate: [0.1, 0, 0.2]}], "
+      "material: dense}\n",
       &(abbe_trace_desc){.width = 4, .height = 4, .no_map = true, .threads = 1, .photons = 64}, 0,
       &f);
   for (int i = 0; i < 3; i++) {
@@ -277,18 +266,17 @@ TEST(splitting_keeps_the_mean) {
       assert_near(mean[i][k], mean[2][k], 4 * hypot(error[i][k], error[2][k]));
       assert_true(error[i + 1][k] < error[i][k] && error[i][k] < 0.02 * mean[i][k]);
     }
-  drop(&f);
 }
 
 /* Sixteen samples of a pixel: the mean of one, with less than a quarter of its spread, for they are
  * even over the pixel and the spectrum. */
 TEST(samples_share_a_pixel) {
   double mean[2][3], error[2][3];
-  fixture f;
+  OWNED(fixture, f) = {0};
   make_with(
       CAMERA "ambient: 0.5\n" LIGHT("kind: point, position: [0.5, 0, 0.4], intensity: 3") FLOOR
-      "- {name: ball, shape: sphere, radius: 0.3, transform: [{translate: [0, 0, 0.1]}], "
-      "material: crown}\n",
+      "- {name: ball, shape: sphere, radius: 0.3, transform: [{translate: [0, 0, 0.1]}], material: "
+      "crown}\n",
       &(abbe_trace_desc){.width = 1, .height = 1, .no_map = true, .threads = 1, .photons = 64}, 0,
       &f);
   for (int i = 0; i < 2; i++) {
@@ -300,13 +288,12 @@ TEST(samples_share_a_pixel) {
     /* of a tenth of the passes */
     assert_true(error[1][k] < sqrt(10) / 4 * error[0][k]);
   }
-  drop(&f);
 }
 
 /* Along the axis of an absorbing ball: r + (1 - r)^2 k / (1 - r k) with k = exp(-a 2 R), over the
  * spectrum of the sky. */
 TEST(absorbing_glass_shows) {
-  fixture f;
+  OWNED(fixture, f) = {0};
   double mean[3], error[3], expected[3] = {0}, white[3] = {0}, r = 0.04;
   make_with(DOWN EVEN_SKY GLASS_ONLY("smoke"),
             &(abbe_trace_desc){.width = 4, .height = 4, .no_map = true, .threads = 1}, 1, &f);
@@ -325,7 +312,6 @@ TEST(absorbing_glass_shows) {
     assert_near(mean[k], expected[k] / white[k], 4 * error[k]);
     assert_true(mean[k] < 0.6 && error[k] < 0.01);
   }
-  drop(&f);
 }
 
 /* Over black, a slab shows what it mirrors of the sky: 2 r / (1 + r) with all inner reflections;
@@ -334,7 +320,7 @@ TEST(a_slab_mirrors_the_sky) {
   abbe_trace_desc desc = {.width = 4, .height = 4, .no_map = true, .threads = 1};
   double r = 0.04, mean[3], error[3];
   for (int matched = 0; matched < 2; matched++) {
-    fixture f;
+    OWNED(fixture, f) = {0};
     desc.physics = (abbe_physics){.matched = matched == 1, .orders = 1};
     make_with(
         DOWN EVEN_SKY
@@ -344,27 +330,24 @@ TEST(a_slab_mirrors_the_sky) {
     look(&f, 400, mean, error);
     for (int k = 0; k < 3; k++)
       assert_near(mean[k], matched ? r : 2 * r / (1 + r), 4 * error[k] + 1e-6);
-    drop(&f);
   }
 }
 
 /* Straight down through a block that lets 0.8 % through, on a floor in ambient light: paths end by
  * roulette below 2 %, and their mean stays Beer-Lambert's. */
 TEST(dark_glass_keeps_its_mean) {
-  fixture f;
+  OWNED(fixture, f) = {0};
   const double r = 0.04, left = exp(-0.4 * 12);
   const double want = 0.5 / ABBE_PI * (1 - r) * (1 - r) * left / (1 - r * r * left * left);
   double mean[3], error[3];
-  load_text(
-      DOWN "ambient: 1\n" LIGHT(
-          "kind: point, position: [3, 3, 3], intensity: 1e-12") "objects:\n- {name: floor, shape: "
-                                                                "rectangle, width: 9, height: 9, "
-                                                                "reflectance: 0.5}\n"
-                                                                "- {name: block, shape: box, size: "
-                                                                "[0.4, 0.4, 0.4], transform: "
-                                                                "[{translate: [0.1, 0, 0.3]}],"
-                                                                " material: smoke}\n",
-      &f.scene);
+  f.scene = scene_of(DOWN "ambient: 1\n" LIGHT(
+      "kind: point, position: [3, 3, 3], intensity: 1e-12") "objects:\n- {name: floor, shape: "
+                                                            "rectangle, width: 9, height: 9, "
+                                                            "reflectance: 0.5}\n"
+                                                            "- {name: block, shape: box, size: "
+                                                            "[0.4, 0.4, 0.4], transform: "
+                                                            "[{translate: [0.1, 0, 0.3]}], "
+                                                            "material: smoke}\n");
   f.objects = f.scene.object_count;
   for (size_t i = 0; i < f.scene.table.count; i++) {
     abbe_spectrum **a = &f.scene.table.material[i].attenuation;
@@ -382,12 +365,11 @@ TEST(dark_glass_keeps_its_mean) {
     assert_true(error[k] < 0.02 * want);
     assert_near(mean[k], want, 4 * error[k]);
   }
-  drop(&f);
 }
 
 /* Bands hold watts a nanometre: over all of them what a receiver of that reflectance returns. */
 TEST(bands_add_up) {
-  fixture f;
+  OWNED(fixture, f) = {0};
   abbe_eye_sample s;
   make_with(DOWN LIGHT("kind: point, position: [0.1, 0, 0.5], intensity: 3") FLOOR,
             &(abbe_trace_desc){.width = 4, .height = 4, .no_map = true, .threads = 1, .bands = 16},
@@ -396,7 +378,7 @@ TEST(bands_add_up) {
   double sum = 0;
   for (int i = 0; i < 16; i++) sum += (double)s.band[i] * 25;
   assert_near(sum, 3 / 0.25 * 0.5 / ABBE_PI, 1e-4);
-  drop(&f);
+  fixture_free(&f);
   /* through glass each path has one wavelength, and so one band: the mean is the same */
   make_with(DOWN EVEN_SKY GLASS_ONLY("crown"),
             &(abbe_trace_desc){.width = 4, .height = 4, .no_map = true, .threads = 1, .bands = 16},
@@ -413,13 +395,11 @@ TEST(bands_add_up) {
   double error = sqrt((square - mean * mean) / COUNT);
   assert_near(mean, 1, 4 * error);
   assert_true(error < 0.02);
-  drop(&f);
 }
 
 TEST(a_sample_repeats_itself) {
-  fixture f;
   abbe_eye_sample a, b;
-  make(CAMERA POINT_LIGHT FLOOR RING("crown"), &f);
+  FILLED(fixture, f, make(CAMERA POINT_LIGHT FLOOR RING("crown"), &f));
   int differ = 0, refract = 0;
   for (size_t pixel = 0; pixel < 16; pixel++) {
     abbe_eye_walk_pixel(&f.tracer->eye, pixel, 7, &a);
@@ -432,5 +412,4 @@ TEST(a_sample_repeats_itself) {
   }
   assert_true(differ > 8);
   assert_true(refract > 0 && refract < 16);
-  drop(&f);
 }

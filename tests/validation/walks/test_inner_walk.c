@@ -31,7 +31,7 @@ static float dot(const float a[3], const float b[3]) {
 /* Paths from the surface into the solid. */
 static void make(const char *text, float eta, float attenuation, fixture *f) {
   memset(f, 0, sizeof *f);
-  load_text(text, &f->scene);
+  f->scene = scene_of(text);
   OK(abbe_geometry_make(&f->scene, &f->g, &error));
   f->rules = (abbe_inner_rules){.seed = 3, .pass = 2, .shift = {7, 1u << 20, 5, 11}};
   uint64_t random = 11;
@@ -62,7 +62,7 @@ static void run(fixture *f) {
   abbe_inner_walk(&f->g.solid[0], &f->rules, f->path, PATHS, &f->ledger, &record, &f->rays);
 }
 
-static void drop(fixture *f) {
+static void fixture_free(fixture *f) {
   abbe_geometry_free(&f->g);
   abbe_scene_free(&f->scene);
 }
@@ -118,8 +118,8 @@ TEST(every_lane_is_one_path) {
     }
     assert_true(same > PATHS * 8 / 10);
     if (i == 0) assert_true(long_ones > PATHS / 20);
-    drop(&f);
-    drop(&alone);
+    fixture_free(&f);
+    fixture_free(&alone);
   }
 }
 
@@ -136,7 +136,7 @@ TEST(light_leaves_or_is_absorbed) {
   assert_true(f.ledger.absorbed > 0.1 * PATHS && left > 0.1 * PATHS);
   assert_true(gone > 0);
   assert_true(f.rays > 2 * PATHS);
-  drop(&f);
+  fixture_free(&f);
 }
 
 /* In a sphere the share of what is absorbed on a chord is known. */
@@ -155,7 +155,7 @@ TEST(a_chord_absorbs_by_its_length) {
     assert_near((double)f.path[k].flux, exp(-0.7 * (double)chord), 1e-5);
     assert_int_equal(f.path[k].steps, 2);
   }
-  drop(&f);
+  fixture_free(&f);
 }
 
 TEST(the_order_has_no_part_in_it) {
@@ -173,8 +173,8 @@ TEST(the_order_has_no_part_in_it) {
     assert_memory_equal(a->p, b->p, sizeof a->p);
     assert_memory_equal(a->d, b->d, sizeof a->d);
   }
-  drop(&f);
-  drop(&turned);
+  fixture_free(&f);
+  fixture_free(&turned);
 }
 
 /* Light at more than the critical angle goes round in a ball for ever. */
@@ -192,7 +192,7 @@ TEST(what_never_leaves_is_lost) {
     assert_int_equal(f.path[k].end, ABBE_INNER_LOST);
     assert_int_equal(f.path[k].steps, ABBE_INNER_MAX_STEPS);
   }
-  drop(&f);
+  fixture_free(&f);
 }
 
 TEST(matched_physics_ends_where_the_renderer_does) {
@@ -211,5 +211,5 @@ TEST(matched_physics_ends_where_the_renderer_does) {
     }
   }
   assert_true(trapped > PATHS / 10 && trapped < PATHS);
-  drop(&f);
+  fixture_free(&f);
 }

@@ -19,7 +19,7 @@ TEST(the_books_close) {
     assert_true(i % 2 ? l->trapped > 0 : l->trapped == 0);
     assert_true(l->contact == 0);
     assert_true(l->lost <= 1e-4 * l->reached);
-    drop(&f);
+    fixture_free(&f);
   }
 }
 
@@ -32,7 +32,7 @@ TEST(fresnels_share_at_normal_incidence) {
   check_share((double)landed, (double)f.photons, 1 - back);
   check_share(f.ledger.missed, (double)f.photons, back);
   assert_near(f.ledger.reached, (double)f.photons, 0);
-  drop(&f);
+  fixture_free(&f);
 }
 
 /* A slab of 0.1 m that keeps exp(-a d) of the light at each crossing: T = (1-r)^2 k / (1 - r^2 k^2)
@@ -51,21 +51,20 @@ TEST(beer_and_lambert) {
   /* what a photon lands with varies by no more than what it lands at all */
   assert_near(landed, expected, 4 * 0.3 / sqrt((double)f.photons));
   assert_true(f.ledger.absorbed > 0.5 * (double)f.photons);
-  drop(&f);
+  fixture_free(&f);
 }
 
 /* A roof of 90 degrees over a base: what enters the base from below meets both slanted faces at 45
  * degrees, beyond the critical angle of 41.8, and comes back down whole. */
 TEST(total_reflection_lets_nothing_through) {
   static fixture f;
-  make(CAMERA POINT_LIGHT FLOOR
-       "- {name: roof, shape: prism, apex: 90, side: 0.2, length: 0.4, transform: [{translate: "
-       "[0, 0, 0.3]}], material: flat}\n",
+  make(CAMERA POINT_LIGHT FLOOR "- {name: roof, shape: prism, apex: 90, side: 0.2, length: 0.4, "
+                                "transform: [{translate: [0, 0, 0.3]}], material: flat}\n",
        NULL, &f);
   size_t landed = shoot(&f, (double[3]){0.04, 0.01, 0.1}, (double[3]){0, 0, 1}, 4);
   assert_int_equal(landed, f.photons);
   assert_near(f.ledger.deposited, (double)f.photons, 1e-6);
-  drop(&f);
+  fixture_free(&f);
 }
 
 /* Along the axis through ball in ball: four interfaces, of which the inner two hardly reflect. */
@@ -83,7 +82,7 @@ TEST(nested_glass_reflects_by_the_two_indices) {
   }
   check_share(f.ledger.deposited, (double)f.photons, mean);
   assert_true(f.ledger.lost == 0);
-  drop(&f);
+  fixture_free(&f);
 }
 
 /* A refractor of index 1 is not there: light goes straight on, by one path. */
@@ -100,7 +99,7 @@ TEST(glass_of_index_one_is_not_there) {
     for (int k = 0; k < 3; k++) assert_near(p[k], from[k] + t * d[k], 1e-6);
     assert_true(f.hit[i].side > 0 && f.hit[i].surface == 0);
   }
-  drop(&f);
+  fixture_free(&f);
 }
 
 /* Light that meets no refractor is the eye's business. */
@@ -121,7 +120,7 @@ TEST(light_that_misses_is_not_counted) {
   assert_memory_equal(&f.ledger, &empty, sizeof empty);
   assert_int_equal(abbe_light_walk_run(f.walk, &f.scene.light[0], 0, f.photon, 0, f.hit, &f.ledger),
                    0);
-  drop(&f);
+  fixture_free(&f);
 }
 
 /* Matched rules, on a slab at normal incidence: what the outside mirrors goes on (4 %), what is
@@ -139,7 +138,7 @@ TEST(matched_rules_drop_what_they_say) {
     check_share(f.ledger.deposited, (double)f.photons, below);
     check_share(f.ledger.missed, (double)f.photons, above + r);
     check_share(f.ledger.trapped, (double)f.photons, 1 - below - above - r);
-    drop(&f);
+    fixture_free(&f);
   }
   /* below a share of 1 % no order is left: (1 - r) r = 3.8 % goes on, (1 - r) r^2 does not */
   const abbe_physics faint = {.matched = true, .orders = 8, .energy_share = 0.01};
@@ -147,7 +146,7 @@ TEST(matched_rules_drop_what_they_say) {
   shoot(&f, (double[3]){0.02, 0.01, 0.6}, (double[3]){0, 0, -1}, 20);
   check_share(f.ledger.deposited, (double)f.photons, (1 - r) * (1 - r));
   check_share(f.ledger.missed, (double)f.photons, (1 - r) * r * (1 - r) + r);
-  drop(&f);
+  fixture_free(&f);
 }
 
 /* Matched: light that has left one refractor meets the next, by the same rules. */
@@ -163,12 +162,12 @@ TEST(matched_light_passes_two_refractors) {
   /* straight through four faces, or to and fro once between the first two: what the third face
    * sends back is the third interface after the first at the next */
   check_share(f.ledger.deposited, (double)f.photons, pow(1 - r, 4) * (1 + r * r));
-  drop(&f);
+  fixture_free(&f);
   make(two, NULL, &f);
   shoot(&f, from, down, 20);
   /* four faces on one axis: 1/T = 1 + 4 r / (1 - r) */
   check_share(f.ledger.deposited, (double)f.photons, 1 / (1 + 4 * r / (1 - r)));
-  drop(&f);
+  fixture_free(&f);
 }
 
 /* What lands where other receivers hide it from the lamp is told from the rest, in either physics.
@@ -179,9 +178,8 @@ TEST(light_that_the_lamp_does_not_see_is_hidden) {
   /* the ray bends at the brick's slanted way and gets around the lid's edge to the floor */
   const char *text = CAMERA
       "lights:\n- {name: lamp, kind: point, position: [-0.5, 0, 0.62], intensity: 1}\n" FLOOR SLAB(
-          "flat") "- {name: lid, shape: rectangle, width: 0.4, height: "
-                  "0.4, transform: [{translate: [0.2005, "
-                  "0, 0.1]}], reflectance: 0.5}\n";
+          "flat") "- {name: lid, shape: rectangle, width: 0.4, height: 0.4, transform: "
+                  "[{translate: [0.2005, 0, 0.1]}], reflectance: 0.5}\n";
   /* straight on the ray would meet z = 0.1 at x = 0.02, on the lid; the slab shifts it back by
    * more than that */
   double from[3] = {-0.5, 0, 0.62}, d[3] = {1, 0, -1};
@@ -195,14 +193,14 @@ TEST(light_that_the_lamp_does_not_see_is_hidden) {
     if (i) check_share(seen, (double)f.photons, (rs + rs * rs) / 2);
     assert_true(f.hidden > 0.8 * (double)f.photons);
     assert_near(f.ledger.hidden, (double)f.hidden, 1e-6 * (double)f.photons);
-    drop(&f);
+    fixture_free(&f);
     /* where no map is made nothing asks, and as much lands */
     make(text, i ? &matched : NULL, &f);
     abbe_light_walk_for_map(f.walk, false);
     assert_int_equal(shoot(&f, from, d, 4), landed);
     assert_int_equal(f.hidden, 0);
     assert_true(f.ledger.hidden == 0);
-    drop(&f);
+    fixture_free(&f);
   }
 }
 
@@ -212,34 +210,30 @@ TEST(walls_hide_nothing) {
   static fixture f;
   const char *const more[] = {
       "",
-      "- {name: wall, shape: rectangle, width: 2, height: 2, transform: [{rotate: {axis: [0, 1, 0],"
-      " angle: 90}}, {translate: [-1, 0, 1]}], reflectance: 0.5}\n",
+      "- {name: wall, shape: rectangle, width: 2, height: 2, transform: [{rotate: {axis: [0, 1, "
+      "0], angle: 90}}, {translate: [-1, 0, 1]}], reflectance: 0.5}\n",
       "- {name: card, shape: rectangle, width: 2, height: 2, transform: [{translate: [0, 0, "
-      "0.1]}], "
-      "reflectance: 0.5}\n- {name: under, shape: rectangle, width: 4, height: 4, transform: "
-      "[{translate: [0, 0, -0.5]}], reflectance: 0.5}\n"};
+      "0.1]}], reflectance: 0.5}\n- {name: under, shape: rectangle, width: 4, height: 4, "
+      "transform: [{translate: [0, 0, -0.5]}], reflectance: 0.5}\n"};
   for (size_t i = 0; i < sizeof more / sizeof *more; i++) {
-    char text[2048];
-    snprintf(text, sizeof text, "%s%s%s", CAMERA POINT_LIGHT FLOOR, more[i], BALL("flat"));
-    make(text, NULL, &f);
+    make(printed("%s%s%s", CAMERA POINT_LIGHT FLOOR, more[i], BALL("flat")), NULL, &f);
     flood(&f, 4);
     assert_true(f.ledger.deposited > 0);
     assert_true(f.ledger.hidden == 0);
-    drop(&f);
+    fixture_free(&f);
   }
 }
 
 /* The books tell light that gets onto a receiver from inside of a refractor. */
 TEST(contact_is_told) {
   static fixture f;
-  make(CAMERA POINT_LIGHT FLOOR
-       "- {name: brick, shape: box, size: [0.2, 0.2, 0.2], transform: [{translate: [0, 0, 0.05]}], "
-       "material: flat}\n",
+  make(CAMERA POINT_LIGHT FLOOR "- {name: brick, shape: box, size: [0.2, 0.2, 0.2], transform: "
+                                "[{translate: [0, 0, 0.05]}], material: flat}\n",
        NULL, &f);
   shoot(&f, (double[3]){0, 0, 0.6}, (double[3]){0, 0, -1}, 4);
   check_share(f.ledger.contact, (double)f.photons, 0.96);
   assert_near(f.ledger.contact, f.ledger.deposited, 1e-6);
-  drop(&f);
+  fixture_free(&f);
 }
 
 /* Same counters, same landings, whatever else ran before; another pass or seed: others. */
@@ -270,18 +264,17 @@ TEST(a_walk_repeats_itself) {
   assert_true(a != b || memcmp(first[0].p, g.hit[0].p, sizeof first[0].p) != 0 ||
               memcmp(first[a - 1].p, g.hit[a - 1].p, sizeof first[0].p) != 0);
   assert_true(abbe_light_walk_rays(f.walk) >= 2 * a);
-  drop(&f);
-  drop(&g);
+  fixture_free(&f);
+  fixture_free(&g);
 }
 
 /* Straight down through 0.4 m of smoke less than 2 % comes out: paths end by roulette below 5 %,
  * and their mean stays Beer-Lambert's, with the reflections that a slab adds up. */
 TEST(dark_glass_keeps_its_mean) {
-  fixture f;
+  OWNED(fixture, f) = {0};
   static const double from[3] = {0.01, 0.02, 0.9}, down[3] = {0, 0, -1};
-  make(CAMERA POINT_LIGHT FLOOR
-       "- {name: block, shape: box, size: [0.4, 0.4, 0.4], transform: [{translate: [0, 0, 0.3]}], "
-       "material: smoke}\n",
+  make(CAMERA POINT_LIGHT FLOOR "- {name: block, shape: box, size: [0.4, 0.4, 0.4], transform: "
+                                "[{translate: [0, 0, 0.3]}], material: smoke}\n",
        NULL, &f);
   const double r = 0.04;
   double want = 0, variance = 0, landed = 0;
@@ -306,7 +299,6 @@ TEST(dark_glass_keeps_its_mean) {
   assert_near(landed / photons, want, 4 * sigma);
   const abbe_light_ledger *l = &f.ledger;
   assert_near(l->absorbed / photons, 1 - r - want, 6 * sigma + 1e-3);
-  drop(&f);
 }
 
 /* A normal of the slab's lower side that is bent by 60 degrees mirrors all light that comes
@@ -314,11 +306,11 @@ TEST(dark_glass_keeps_its_mean) {
  * face, leaves through the slab's end, level to a thousandth, and does not come down on the floor.
  */
 TEST(what_a_bent_normal_mirrors_stays_inside) {
-  fixture f;
+  OWNED(fixture, f) = {0};
   static const double from[3] = {0.01, 0.02, 0.9}, down[3] = {0, 0, -1};
   double lambda_nm[STEPS + 1];
   memset(&f, 0, sizeof f);
-  load_text(CAMERA POINT_LIGHT FLOOR SLAB("flat"), &f.scene);
+  f.scene = scene_of(CAMERA POINT_LIGHT FLOOR SLAB("flat"));
   abbe_mesh *mesh = &f.scene.object[1].mesh;
   size_t bent = 0;
   for (size_t i = 0; i < mesh->vertex_count; i++)
@@ -338,5 +330,4 @@ TEST(what_a_bent_normal_mirrors_stays_inside) {
   assert_int_equal(shoot(&f, from, down, 4), 0);
   assert_true(f.ledger.lost == 0 && f.ledger.contact == 0);
   assert_near(f.ledger.missed / (double)f.photons, 1, 1e-6);
-  drop(&f);
 }

@@ -13,11 +13,9 @@ static double balance(const fixture *f) {
  * steradian. */
 TEST(a_mirror_ball_shines_evenly) {
   static fixture f;
-  make(
-      CAMERA POINT_LIGHT FLOOR ROOM
-      "- {name: ball, shape: sphere, radius: 0.05, levels: 2, transform: [{translate: [0, 0, 3]}], "
-      "mirror: 0.8}\n",
-      NULL, &f);
+  make(CAMERA POINT_LIGHT FLOOR ROOM "- {name: ball, shape: sphere, radius: 0.05, levels: 2, "
+                                     "transform: [{translate: [0, 0, 3]}], mirror: 0.8}\n",
+       NULL, &f);
   enum { BATCHES = 64, BINS = 10 };
   double up[BINS] = {0}, all = 0;
   uint64_t random = 3;
@@ -54,7 +52,7 @@ TEST(a_mirror_ball_shines_evenly) {
   assert_near(f.ledger.reached, (double)shot, 1e-3);
   assert_near(f.ledger.absorbed / f.ledger.reached, 0.2, 1e-4);
   assert_near(balance(&f) / f.ledger.reached, 1, 1e-5);
-  drop(&f);
+  fixture_free(&f);
 }
 
 /* Between two mirrors that face each other a ray loses the same share each time. */
@@ -62,8 +60,7 @@ TEST(two_mirrors_take_their_share_each_time) {
   static fixture f;
   make(CAMERA POINT_LIGHT FLOOR
        "- {name: left, shape: rectangle, width: 1, height: 1, transform: [{rotate: {axis: [0, 1, "
-       "0], "
-       "angle: 90}}, {translate: [-0.35, 0, 0.7]}], mirror: 0.9}\n"
+       "0], angle: 90}}, {translate: [-0.35, 0, 0.7]}], mirror: 0.9}\n"
        "- {name: right, shape: rectangle, width: 1, height: 1, transform: [{rotate: {axis: [0, 1, "
        "0], angle: -90}}, {translate: [-0.25, 0, 0.7]}], mirror: 0.9}\n",
        NULL, &f);
@@ -73,7 +70,7 @@ TEST(two_mirrors_take_their_share_each_time) {
   assert_int_equal(landed, BATCH);
   for (size_t i = 0; i < landed; i++) assert_near((double)f.hit[i].flux, pow(0.9, 5), 1e-5);
   assert_near(balance(&f) / f.ledger.reached, 1, 1e-5);
-  drop(&f);
+  fixture_free(&f);
 }
 
 /* A black mirror takes all, a whole one nothing. */
@@ -81,18 +78,17 @@ TEST(reflectance_has_its_ends) {
   static const char *const value[] = {"0", "1"};
   for (int i = 0; i < 2; i++) {
     static fixture f;
-    char text[1024];
-    snprintf(text, sizeof text,
-             CAMERA POINT_LIGHT FLOOR "- {name: plate, shape: rectangle, width: 1, height: 1, "
-                                      "transform: [{rotate: {axis: [1, 0, 0], angle: 135}}, "
-                                      "{translate: [0, 0, 0.8]}], mirror: %s}\n",
-             value[i]);
-    make(text, NULL, &f);
+    make(printed(
+             CAMERA POINT_LIGHT FLOOR
+             "- {name: plate, shape: rectangle, width: 1, height: 1, transform: [{rotate: {axis: "
+             "[1, 0, 0], angle: 135}}, {translate: [0, 0, 0.8]}], mirror: %s}\n",
+             value[i]),
+         NULL, &f);
     const double from[3] = {0, -0.5, 0.8}, d[3] = {0, 1, 0};
     const size_t landed = shoot(&f, from, d, 1);
     assert_int_equal(landed, i == 0 ? 0 : BATCH);
     assert_near(f.ledger.absorbed, i == 0 ? BATCH : 0, 1e-6);
-    drop(&f);
+    fixture_free(&f);
   }
 }
 
@@ -101,8 +97,7 @@ TEST(light_goes_through_glass_off_a_mirror_and_back) {
   static fixture f;
   make(CAMERA POINT_LIGHT FLOOR ROOM SLAB(
            "flat") "- {name: plate, shape: rectangle, width: 1, height: 1, transform: [{translate: "
-                   "[0, 0, 0.1]}], "
-                   "mirror: 1}\n",
+                   "[0, 0, 0.1]}], mirror: 1}\n",
        NULL, &f);
   const double from[3] = {0, 0, 1}, d[3] = {0, 0.01, -1};
   const size_t landed = shoot(&f, from, d, 4);
@@ -113,5 +108,5 @@ TEST(light_goes_through_glass_off_a_mirror_and_back) {
     assert_true(p[2] > 40);
   }
   assert_near(balance(&f) / f.ledger.reached, 1, 1e-5);
-  drop(&f);
+  fixture_free(&f);
 }

@@ -22,7 +22,7 @@ TEST(parted_light_is_the_same_light) {
       if (parts == 0) reached = l->reached;
       assert_true(l->reached == reached);
       landed[parts] = l->deposited;
-      drop(&f);
+      fixture_free(&f);
     }
     /* the share that lands is that of some 20000 photons: four standard deviations, of two means */
     for (unsigned parts = 1; parts < 1u << ABBE_PHOTON_SPLITS; parts++)
@@ -45,7 +45,7 @@ TEST(parting_gives_fresnels_share_exactly) {
     assert_true(fabs(flux - (1 - r) * (1 - r)) < 1e-5 || flux < r * (1 + 1e-5));
   }
   assert_int_equal(straight, BATCH);
-  drop(&f);
+  fixture_free(&f);
 }
 
 TEST(parts_are_where_the_rare_way_lands) {

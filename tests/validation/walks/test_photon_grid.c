@@ -58,7 +58,7 @@ TEST(finds_what_a_search_through_all_finds) {
                {{5, 5, 5}, 1, 1e-3, false}};
   static abbe_grid_photon photon[PHOTONS];
   uint64_t random = 3;
-  abbe_photon_grid grid = {0};
+  OWNED(abbe_photon_grid, grid) = {0};
   for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
     float radius = (float)cases[c].radius;
     scatter(photon, PHOTONS, cases[c].centre, cases[c].size, cases[c].flat, &random);
@@ -73,7 +73,6 @@ TEST(finds_what_a_search_through_all_finds) {
       check_gather(&grid, photon, PHOTONS, p, share * radius, q->surface, q->flux);
     }
   }
-  abbe_photon_grid_free(&grid);
 }
 
 /* Many photons in one place: all of them, once each. */
@@ -81,12 +80,10 @@ TEST(photons_in_one_place) {
   static abbe_grid_photon photon[PHOTONS];
   for (uint32_t i = 0; i < PHOTONS; i++)
     photon[i] = (abbe_grid_photon){.p = {-0.5f, 0.25f, 0}, .flux = 1, .colour = i};
-  abbe_photon_grid grid = {0};
-  OK(abbe_photon_grid_fill(&grid, photon, PHOTONS, 0.5f, 2, &error));
+  MADE(abbe_photon_grid, grid, abbe_photon_grid_fill(&grid, photon, PHOTONS, 0.5f, 2, &error));
   check_gather(&grid, photon, PHOTONS, (float[3]){-0.5f, 0.25f, 0}, 0.5f, 0, 1);
   check_gather(&grid, photon, PHOTONS, (float[3]){0, 0.25f, 0}, 0.5f, 0, 1); /* on the rim */
   check_gather(&grid, photon, PHOTONS, (float[3]){0.01f, 0.25f, 0}, 0.5f, 0, 1);
-  abbe_photon_grid_free(&grid);
 }
 
 static void gather_order(void *user, const abbe_grid_photon *photon) {
@@ -100,12 +97,10 @@ TEST(order_is_kept_within_a_cell) {
   static abbe_grid_photon photon[PHOTONS];
   for (uint32_t i = 0; i < PHOTONS; i++)
     photon[i] = (abbe_grid_photon){.p = {0.2f, 0.2f, 0.2f}, .flux = 1, .colour = i};
-  abbe_photon_grid grid = {0};
-  OK(abbe_photon_grid_fill(&grid, photon, PHOTONS, 0.1f, 2, &error));
+  MADE(abbe_photon_grid, grid, abbe_photon_grid_fill(&grid, photon, PHOTONS, 0.1f, 2, &error));
   uint32_t last = 0;
   abbe_photon_grid_gather(&grid, photon[0].p, 0.1f, 0, 1, gather_order, &last);
   assert_int_equal(last, PHOTONS - 1);
-  abbe_photon_grid_free(&grid);
 }
 
 /* Filled again with fewer, more and none: what was there before is gone. */

@@ -31,12 +31,12 @@ typedef struct fixture {
 } fixture;
 
 static void make(const char *text, fixture *f) {
-  load_text(text, &f->scene);
+  f->scene = scene_of(text);
   OK(abbe_geometry_make(&f->scene, &f->geometry, &error));
   OK(abbe_projection_map_make(&f->geometry, 0, &f->aim, &error));
 }
 
-static void drop(fixture *f) {
+static void fixture_free(fixture *f) {
   abbe_projection_map_free(&f->aim);
   abbe_geometry_free(&f->geometry);
   abbe_scene_free(&f->scene);
@@ -140,8 +140,7 @@ static void check_ray(const fixture *f, cell_table table, const float o[3], cons
 /* Whichever ray meets a refractor belongs to a cell, and the cell gives this very direction.
  * Returns how many met one. */
 static size_t check_covered(const char *text, size_t rays) {
-  fixture f;
-  make(text, &f);
+  FILLED(fixture, f, make(text, &f));
   static cell_table table;
   fill_table(&f.aim, table);
   uint64_t random = 17;
@@ -155,7 +154,6 @@ static size_t check_covered(const char *text, size_t rays) {
     met++;
     check_ray(&f, table, o, d);
   }
-  drop(&f);
   return met;
 }
 
@@ -168,15 +166,18 @@ TEST(whatever_meets_a_refractor_is_in_a_cell) {
           BRICK("flat"),
       CAMERA LIGHT("kind: point, position: [0, 0, 0.2], intensity: 1") FLOOR COARSE_RING,
       CAMERA LIGHT("kind: point, position: [0.3, 0.2, 0.55], intensity: 1") FLOOR ALL_ROUND,
-      CAMERA LIGHT("kind: disk, position: [0, 0, 0.32], target: [0, 0, 0.2], radius: 0.03, "
-                   "radiance: 1") FLOOR BALL("flat"),
-      CAMERA LIGHT("kind: disk, position: [0, 0, 0.4], target: [0, 0, 0.2], radius: 0.05, "
-                   "radiance: 1") FLOOR COARSE_RING BRICK("flat"),
+      CAMERA LIGHT(
+          "kind: disk, position: [0, 0, 0.32], target: [0, 0, 0.2], radius: 0.03, radiance: 1")
+          FLOOR BALL("flat"),
+      CAMERA LIGHT(
+          "kind: disk, position: [0, 0, 0.4], target: [0, 0, 0.2], radius: 0.05, radiance: 1")
+          FLOOR COARSE_RING BRICK("flat"),
       CAMERA SUN FLOOR COARSE_RING BRICK("flat"),
       CAMERA SPOT("[0, 0, 0.2]", "5", "2") FLOOR BALL("flat"),
       /* the spot looks away from one of the two */
-      CAMERA LIGHT("kind: spot, position: [0.11, 0, 0.2], target: [0.3, 0, 0.2], intensity: 1, "
-                   "cone: 60") FLOOR BALL("flat") BRICK("flat"),
+      CAMERA LIGHT(
+          "kind: spot, position: [0.11, 0, 0.2], target: [0.3, 0, 0.2], intensity: 1, cone: 60")
+          FLOOR BALL("flat") BRICK("flat"),
   };
   for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++)
     assert_true(check_covered(scenes[i], 4000) > 200);
@@ -186,8 +187,7 @@ TEST(shares_add_up_to_one) {
   static const char *const scenes[] = {CAMERA SUN FLOOR COARSE_RING,
                                        CAMERA SPOT("[0, 0, 0.2]", "5", "2") FLOOR BALL("flat")};
   for (int i = 0; i < 2; i++) {
-    fixture f;
-    make(scenes[i], &f);
+    FILLED(fixture, f, make(scenes[i], &f));
     double sum = 0;
     for (size_t c = 0; c < f.aim.count; c++) {
       assert_true(f.aim.cell[c].share > 0);
@@ -196,7 +196,6 @@ TEST(shares_add_up_to_one) {
       sum += (double)f.aim.cell[c].share;
     }
     assert_near(sum, 1, 1e-4);
-    drop(&f);
   }
 }
 
@@ -222,38 +221,36 @@ static double flux_that_meets(const fixture *f, uint64_t random, size_t each) {
 /* A ball of half angle a is seen in 2 pi (1 - cos a) sr, and a parallel beam meets pi r^2 of it.
  * The cells that are kept lie within about two cells around it. */
 TEST(a_ball_gets_its_solid_angle) {
-  fixture f;
-  make(CAMERA FAR_POINT FLOOR BALL("flat"), &f);
+  FILLED(fixture, f, make(CAMERA FAR_POINT FLOOR BALL("flat"), &f));
   double away = sqrt(0.05 * 0.05 + 0.03 * 0.03 + 0.4 * 0.4);
   double exact = 2 * 2 * ABBE_PI * (1 - cos(asin(0.08 / away)));
   assert_near(flux_that_meets(&f, 1, 4) / exact, 1, 2e-3);
   assert_true(f.aim.reach >= exact && f.aim.reach < exact * pow(1 + 4.0 / 128, 2));
-  drop(&f);
+  fixture_free(&f);
   make(CAMERA SUN FLOOR BALL("flat"), &f);
   exact = ABBE_PI * 0.08 * 0.08;
   assert_near(flux_that_meets(&f, 2, 4) / exact, 1, 2e-3);
   assert_true(f.aim.reach >= exact && f.aim.reach < exact * pow(1 + 4.0 / 128, 2));
-  drop(&f);
 }
 
 /* From within a ring of walls that fill z = 0.5 to 0.7 around a light in the middle: every wall is
  * a rectangle of tangents 1 by 0.1 / 0.49, seen in 4 atan(a b / sqrt(1 + a^2 + b^2)). */
 TEST(walls_all_round_get_their_solid_angle) {
-  fixture f;
+  OWNED(fixture, f) = {0};
   make(CAMERA LIGHT("kind: point, position: [0, 0, 0.6], intensity: 1") FLOOR ALL_ROUND, &f);
   double a = 1, b = 0.1 / 0.49;
   double exact = 4 * 4 * atan(a * b / sqrt(1 + a * a + b * b));
   assert_near(flux_that_meets(&f, 3, 8) / exact, 1, 4e-3);
-  drop(&f);
 }
 
 /* A disk over a ball, both on one axis: the view factor from disk to sphere by an integral in
  * double precision of the ball's cone, cos-weighted, over the disk: for a ball wholly before the
  * disk's plane a point of it at distance D and angle t to the normal receives pi (r/D)^2 cos t. */
 TEST(a_disk_lights_flux) {
-  fixture f;
-  make(CAMERA LIGHT("kind: disk, position: [0, 0, 0.6], target: [0, 0, 0.2], radius: 0.1, "
-                    "radiance: 3") FLOOR BALL("flat"),
+  OWNED(fixture, f) = {0};
+  make(CAMERA LIGHT(
+           "kind: disk, position: [0, 0, 0.6], target: [0, 0, 0.2], radius: 0.1, radiance: 3")
+           FLOOR BALL("flat"),
        &f);
   double exact = 0;
   enum { RINGS = 1000 };
@@ -263,7 +260,6 @@ TEST(a_disk_lights_flux) {
         3 * 2 * ABBE_PI * rho * 0.1 / RINGS * ABBE_PI * 0.08 * 0.08 / square * 0.4 / sqrt(square);
   }
   assert_near(flux_that_meets(&f, 4, 8) / exact, 1, 4e-3);
-  drop(&f);
 }
 
 /* A spot that fits into the ball: its own flux reaches it, however narrow it is. A soft edge is a
@@ -271,33 +267,29 @@ TEST(a_disk_lights_flux) {
 TEST(a_spots_cone_is_reached_whole) {
   static const double cones[] = {10, 0.05, 0.001};
   for (size_t i = 0; i < sizeof cones / sizeof *cones; i++) {
-    char text[1024];
-    snprintf(text, sizeof text,
-             CAMERA LIGHT("kind: spot, position: [0.05, 0.03, 0.6], target: [0.001, 0, 0.2], "
-                          "intensity: 2, cone: %g") FLOOR BALL("flat"),
-             cones[i]);
-    fixture f;
-    make(text, &f);
+    FILLED(fixture, f,
+           make(printed(CAMERA LIGHT(
+                            "kind: spot, position: [0.05, 0.03, 0.6], target: [0.001, 0, 0.2], "
+                            "intensity: 2, cone: %g") FLOOR BALL("flat"),
+                        cones[i]),
+                &f));
     double exact = 2 * 4 * ABBE_PI * pow(sin(0.5 * cones[i] * ABBE_PI / 180), 2);
     assert_near(flux_that_meets(&f, 5 + i, 4) / exact, 1, 5e-3);
     assert_near(f.aim.reach / exact, 1, 5e-3);
-    drop(&f);
   }
-  fixture f;
-  make(CAMERA SPOT("[0, 0, 0.2]", "9", "4") FLOOR BALL("flat"), &f);
+  FILLED(fixture, f, make(CAMERA SPOT("[0, 0, 0.2]", "9", "4") FLOOR BALL("flat"), &f));
   double inner = cos(5 * ABBE_PI / 180), outer = cos(9 * ABBE_PI / 180);
   double exact = 2 * 2 * ABBE_PI * ((1 - inner) + 0.5 * (inner - outer));
   assert_near(flux_that_meets(&f, 11, 4) / exact, 1, 3e-3);
-  drop(&f);
 }
 
 /* What is behind a wall gets few photons, but some: a wall hides nothing from photons
  * that the trials missed. What is in sight gets most. */
 TEST(hidden_cells_keep_a_share) {
-  fixture f;
-  make(CAMERA FAR_POINT FLOOR BALL("flat") "- {name: lid, shape: rectangle, width: 0.4, height: "
-                                           "0.4, transform: [{translate: [0.237, 0, "
-                                           "0.5]}], reflectance: 0.5}\n",
+  OWNED(fixture, f) = {0};
+  make(CAMERA FAR_POINT FLOOR BALL(
+           "flat") "- {name: lid, shape: rectangle, width: 0.4, height: 0.4, transform: "
+                   "[{translate: [0.237, 0, 0.5]}], reflectance: 0.5}\n",
        &f);
   double share[2] = {0}, count[2] = {0};
   for (size_t c = 0; c < f.aim.count; c++) {
@@ -313,7 +305,6 @@ TEST(hidden_cells_keep_a_share) {
   assert_true(count[0] > 100 && count[1] > 100);
   assert_true(share[0] > 0);
   assert_true(share[0] / count[0] < 0.1 * share[1] / count[1]);
-  drop(&f);
 }
 
 TEST(lights_that_miss) {
@@ -321,37 +312,35 @@ TEST(lights_that_miss) {
   make(CAMERA FAR_POINT FLOOR, &f); /* no refractor */
   assert_int_equal(f.aim.count, 0);
   assert_true(f.aim.reach == 0);
-  drop(&f);
+  fixture_free(&f);
   make(CAMERA SPOT("[0.05, 0.03, 2]", "20", "0") FLOOR BALL("flat"), &f); /* looks up */
   assert_int_equal(f.aim.count, 0);
   assert_true(f.aim.reach == 0);
-  drop(&f);
+  fixture_free(&f);
   /* a disk with its back to the ball */
-  make(CAMERA LIGHT("kind: disk, position: [0, 0, 0.6], direction: [0, 0, 1], radius: 0.1, "
-                    "radiance: 3") FLOOR BALL("flat"),
+  make(CAMERA LIGHT(
+           "kind: disk, position: [0, 0, 0.6], direction: [0, 0, 1], radius: 0.1, radiance: 3")
+           FLOOR BALL("flat"),
        &f);
   assert_true(f.aim.reach == 0);
-  drop(&f);
+  fixture_free(&f);
   abbe_projection_map_free(NULL);
 }
 
 /* Neighbours in the list are neighbours in the plane: most steps are of one cell. */
 TEST(neighbours_stay_together) {
-  fixture f;
-  make(CAMERA FAR_POINT FLOOR BALL("flat"), &f);
+  FILLED(fixture, f, make(CAMERA FAR_POINT FLOOR BALL("flat"), &f));
   double steps = 0;
   for (size_t c = 1; c < f.aim.count; c++)
     steps += hypot(f.aim.cell[c].x - f.aim.cell[c - 1].x, f.aim.cell[c].y - f.aim.cell[c - 1].y);
   assert_true(steps / (double)f.aim.count < 2);
-  drop(&f);
 }
 
 TEST(it_ends_when_it_is_told_to) {
-  fixture f;
-  abbe_projection_map map;
+  OWNED(abbe_projection_map, map) = {0};
   abbe_result result = ABBE_CANCELLED;
   patience p;
-  make(CAMERA FAR_POINT FLOOR COARSE_RING, &f);
+  FILLED(fixture, f, make(CAMERA FAR_POINT FLOOR COARSE_RING, &f));
   for (size_t most = 0; result == ABBE_CANCELLED; most = 2 * most + 1) {
     abbe_watch watch = {patience_lasts, &p, false};
     p = (patience){.most = most};
@@ -366,6 +355,4 @@ TEST(it_ends_when_it_is_told_to) {
   assert_true(p.asked > 20);
   assert_int_equal(map.count, f.aim.count);
   assert_memory_equal(map.cell, f.aim.cell, map.count * sizeof *map.cell);
-  abbe_projection_map_free(&map);
-  drop(&f);
 }

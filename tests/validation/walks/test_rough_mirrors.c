@@ -26,7 +26,7 @@ static void see(const char *text, uint32_t passes, view *v) {
   const abbe_trace_desc desc = {
       .width = 4, .height = 4, .no_map = true, .threads = 1, .space = ABBE_RGB_SPACE_XYZ};
   double sum = 0, square = 0, count = 0;
-  load_text(text, &v->scene);
+  v->scene = scene_of(text);
   v->tracer = make_tracer(&v->scene, &desc);
   for (uint32_t pass = 0; pass < passes; pass++)
     for (size_t pixel = 0; pixel < 16; pixel++) {
@@ -60,11 +60,9 @@ static double straight(double alpha) {
 TEST(uniform_light_keeps_what_facets_let_out) {
   static const double alpha[] = {0.05, 0.3, 1};
   for (int i = 0; i < 3; i++) {
-    char text[2048];
     view v;
-    snprintf(text, sizeof text,
-             DOWN "environment: {size: 64, uniform: 2}\n" PLATE("roughness: %.17g, "), alpha[i]);
-    see(text, 200, &v);
+    see(printed(DOWN "environment: {size: 64, uniform: 2}\n" PLATE("roughness: %.17g, "), alpha[i]),
+        200, &v);
     assert_true(v.error < 0.01 * v.y);
     assert_near(v.y, 2 * 0.8 * straight(alpha[i]), 4 * v.error + 2e-4);
     forget(&v);
@@ -80,13 +78,11 @@ TEST(a_point_lamp_shows_the_lobe) {
   double seen[2][2];
   for (int i = 0; i < 2; i++)
     for (int b = 0; b < 2; b++) {
-      char text[2048];
       view v;
-      snprintf(text, sizeof text,
-               DOWN LIGHT("kind: point, position: [%s], intensity: 3")
-                   PLATE("roughness: [0.1, 0.3], brushed: {%s}, "),
-               place[i], brushed[b]);
-      see(text, 1, &v);
+      see(printed(DOWN LIGHT("kind: point, position: [%s], intensity: 3")
+                      PLATE("roughness: [0.1, 0.3], brushed: {%s}, "),
+                  place[i], brushed[b]),
+          1, &v);
       const bool across = (i == 1) == (b == 0);
       const abbe_microfacets m = {0.1, 0.3};
       const double wi[3] = {across ? 0 : 0.6, across ? 0.6 : 0, 0.8};
@@ -108,7 +104,6 @@ TEST(a_disk_lamp_counts_once) {
     enum { RINGS = 200, SECTORS = 200 };
     const abbe_microfacets m = {alpha[i], alpha[i]};
     const double radius = 0.08, high = 0.6, aside = 0.12;
-    char text[2048];
     view v;
     double sum = 0;
     for (int r = 0; r < RINGS; r++)
@@ -120,12 +115,10 @@ TEST(a_disk_lamp_counts_once) {
         sum += abbe_microfacets_reflect(&m, wi, up) * wi[2] * wi[2] / far2;
       }
     const double expected = 0.8 * 5 * sum * ABBE_PI * radius * radius / (RINGS * SECTORS);
-    snprintf(
-        text, sizeof text,
-        DOWN LIGHT("kind: disk, position: [0.12, 0, 1.1], direction: [0, 0, -1], radius: 0.08, "
-                   "radiance: 5") PLATE("roughness: %.17g, "),
-        alpha[i]);
-    see(text, 400, &v);
+    see(printed(DOWN LIGHT("kind: disk, position: [0.12, 0, 1.1], direction: [0, 0, -1], radius: "
+                           "0.08, radiance: 5") PLATE("roughness: %.17g, "),
+                alpha[i]),
+        400, &v);
     assert_true(v.error < 0.05 * v.y);
     assert_near(v.y / (double)v.tracer->white[0][1], expected,
                 4 * v.error / (double)v.tracer->white[0][1] + 1e-3 * expected);
@@ -139,14 +132,12 @@ TEST(a_bright_spot_counts_once) {
   for (int i = 0; i < 3; i++) {
     enum { RINGS = 400, SECTORS = 400 };
     const abbe_microfacets m = {alpha[i], alpha[i]};
-    char text[2048];
     view v;
     double sum = 0;
-    snprintf(text, sizeof text,
-             DOWN "environment: {size: 128, spots: [{elevation: 75, azimuth: 0, radiance: 4, "
-                  "sigma: 6}]}\n" PLATE("roughness: %.17g, "),
-             alpha[i]);
-    see(text, 400, &v);
+    see(printed(DOWN "environment: {size: 128, spots: [{elevation: 75, azimuth: 0, radiance: 4, "
+                     "sigma: 6}]}\n" PLATE("roughness: %.17g, "),
+                alpha[i]),
+        400, &v);
     for (int r = 0; r < RINGS; r++)
       for (int s = 0; s < SECTORS; s++) {
         const double polar = ABBE_PI / 2 * (r + 0.5) / RINGS, a = 2 * ABBE_PI * (s + 0.5) / SECTORS;
@@ -174,11 +165,10 @@ TEST(photons_follow_the_lobe) {
   enum { BATCHES = 24 };
   double within[2] = {0}, all = 0;
   size_t shot = 0;
-  make(
-      CAMERA POINT_LIGHT FLOOR ROOM
-      "- {name: plate, shape: rectangle, width: 1, height: 1, mirror: 0.8, roughness: [0.02, 0.1], "
-      "brushed: {along: [1, 0, 0]}, transform: [{translate: [0, 0, 0.5]}]}\n",
-      NULL, &f);
+  make(CAMERA POINT_LIGHT FLOOR ROOM
+       "- {name: plate, shape: rectangle, width: 1, height: 1, mirror: 0.8, roughness: [0.02, "
+       "0.1], brushed: {along: [1, 0, 0]}, transform: [{translate: [0, 0, 0.5]}]}\n",
+       NULL, &f);
   for (uint32_t b = 0; b < BATCHES; b++) {
     for (uint32_t i = 0; i < BATCH; i++) f.photon[i] = photon_of(&f, from, down, b * BATCH + i);
     const size_t count =
@@ -200,5 +190,5 @@ TEST(photons_follow_the_lobe) {
   assert_near(all / (double)shot, 0.8, 5e-3);
   const abbe_light_ledger *l = &f.ledger;
   assert_near((l->deposited + l->absorbed + l->missed + l->lost) / l->reached, 1, 1e-5);
-  drop(&f);
+  fixture_free(&f);
 }

@@ -15,14 +15,10 @@
 
 static size_t follow(const char *text, const double from[3], const double d[3], const char *choices,
                      abbe_route_vertex vertex[16]) {
-  abbe_scene scene;
-  load_text(text, &scene);
-  abbe_geometry g;
-  OK(abbe_geometry_make(&scene, &g, &error));
+  OWNED(abbe_scene, scene) = scene_of(text);
+  MADE(abbe_geometry, g, abbe_geometry_make(&scene, &g, &error));
   size_t count;
   OK(abbe_route_follow(&g, from, d, 550, choices, vertex, 16, &count, &error));
-  abbe_geometry_free(&g);
-  abbe_scene_free(&scene);
   return count;
 }
 

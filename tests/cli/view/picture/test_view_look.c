@@ -21,13 +21,11 @@ TEST(a_caustic_is_fed_however_few_photons_there_are) {
   static const size_t photons[] = {8, 20};
   static abbe_view_feed feed;
   volatile int stop = 0;
-  OWNED(abbe_scene, scene) = {0};
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   for (size_t i = 0; i < sizeof photons / sizeof *photons; i++) {
     const abbe_render_desc desc = {
         .width = 16, .height = 16, .photons = photons[i], .wavelengths = 3, .map_size = 64};
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
-    draw_frame(renderer);
+    HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
     OK(abbe_view_look_feed(renderer, &scene, place, radius, 550, &stop, &feed, &error));
     assert_int_equal(feed.photons, 0); /* they land too far from each other */
     OK(abbe_view_look_closer(context, renderer, &scene, place, radius, 550, &stop, &feed, &error));
@@ -41,17 +39,14 @@ TEST(a_caustic_is_fed_however_few_photons_there_are) {
         ABBE_CANCELLED, "",
         abbe_view_look_closer(context, renderer, &scene, place, radius, 550, &stop, &feed, &error));
     stop = 0;
-    abbe_renderer_free(renderer);
   }
   const abbe_render_desc many = {
       .width = 16, .height = 16, .photons = 513, .wavelengths = 3, .map_size = 1026};
-  abbe_renderer *renderer = make_renderer(&scene, &many);
-  draw_frame(renderer);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &many);
   OK(abbe_view_look_feed(renderer, &scene, place, radius, 550, &stop, &feed, &error));
   const size_t found = feed.photons;
   assert_true(found > 0);
   /* there are no more to follow: what was found stays */
   OK(abbe_view_look_closer(context, renderer, &scene, place, radius, 550, &stop, &feed, &error));
   assert_int_equal(feed.photons, found);
-  abbe_renderer_free(renderer);
 }

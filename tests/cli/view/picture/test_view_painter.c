@@ -47,28 +47,25 @@ static unsigned char *wait_for(case_ *c) {
 TEST(it_is_the_whole_picture_transformed) {
   static const char *const names[] = {"R", "G", "B"};
   case_ c;
-  abbe_image whole;
   begin(&c);
-  OK(abbe_image_make(WIDTH, HEIGHT, 3, names, &whole, &error));
+  MADE(abbe_image, whole, abbe_image_make(WIDTH, HEIGHT, 3, names, &whole, &error));
   for (size_t i = 0; i < 3 * PIXELS; i++)
     whole.data[i] = 2 * c.pictures.rendered.data[4 * (i / 3) + i % 3]; /* a stop */
   OK(abbe_display_apply(c.display, &whole, &error));
   abbe_view_painter_give(c.painter, &c.painting);
   assert_true(abbe_view_painter_has(c.painter)->exposure == 1);
-  unsigned char *pixels = wait_for(&c);
+  FREED unsigned char *pixels = wait_for(&c);
   for (size_t i = 0; i < 3 * PIXELS; i++) {
     const double seen = fmin(fmax((double)whole.data[i], 0), 1);
     assert_int_equal(pixels[4 * (i / 3) + i % 3], (int)(255 * seen + 0.5));
   }
-  free(pixels);
-  abbe_image_free(&whole);
   end(&c);
 }
 
 /* What is stopped takes a small part of the time, is dropped, and looks at nothing any more. */
 TEST(what_is_stopped_is_nothing) {
   case_ c;
-  unsigned char *pixels = NULL;
+  FREED unsigned char *pixels = NULL;
   abbe_result result;
   begin(&c);
   abbe_view_painter_stop(c.painter); /* of nothing */
@@ -88,7 +85,6 @@ TEST(what_is_stopped_is_nothing) {
   abbe_view_painter_give(c.painter, &c.painting); /* and it goes on with another */
   pixels = wait_for(&c);
   for (size_t i = 0; i < PIXELS; i++) assert_true(pixels[4 * i] < 8 && pixels[4 * i + 3] == 255);
-  free(pixels);
   abbe_view_painter_give(c.painter, &c.painting);
   end(&c); /* nor does the end wait for it */
 }

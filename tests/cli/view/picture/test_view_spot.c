@@ -22,8 +22,7 @@ TEST(a_pixel_has_the_light_of_its_place) {
   static const size_t pixels[][2] = {{12, 100}, {131, 30}};
   const volatile int stop = 1;
   static abbe_view_spot spot;
-  OWNED(abbe_scene, scene) = {0};
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   for (size_t i = 0; i < sizeof pixels / sizeof *pixels; i++) {
     const double xy[2] = {(double)pixels[i][0] + 0.5, (double)pixels[i][1] + 0.5};
     double p[3], to[3], total = 0;
@@ -70,9 +69,8 @@ TEST(a_caustic_behind_glass_has_all_bands) {
   enum { WIDTH = 512, HEIGHT = 512 };
   static const size_t pixel[2] = {256, 256};
   static abbe_view_spot spot;
-  OWNED(abbe_scene, scene) = {0};
   double total = 0;
-  load_text(plate, &scene);
+  OWNED(abbe_scene, scene) = scene_of(plate);
   const double angle = atan2(2, 2.7),
                known = 0.5 / ABBE_PI * 2 * passes(1.52, 0) * passes(1.52, angle);
   OK(abbe_view_spot_trace(&scene, WIDTH, HEIGHT, pixel, 0, NULL, &spot, &error));

@@ -19,15 +19,13 @@ TEST(it_is_the_one_that_is_made_at_once) {
   const struct timespec time = {.tv_nsec = 1000000};
   abbe_display *display = NULL;
   abbe_display_table *other = NULL;
-  OWNED(abbe_image, a);
-  OWNED(abbe_image, b);
   OK(abbe_display_make(&desc, &display, &error));
   abbe_view_table *table = abbe_view_table_begin(display);
   assert_non_null(table);
   OK(abbe_display_table_make(display, &other, &error));
   while (abbe_view_table_get(table) == NULL) nanosleep(&time, NULL);
-  make_image(&a);
-  make_image(&b);
+  FILLED(abbe_image, a, make_image(&a));
+  FILLED(abbe_image, b, make_image(&b));
   OK(abbe_display_table_apply(abbe_view_table_get(table), &a, &error));
   OK(abbe_display_table_apply(other, &b, &error));
   assert_memory_equal(a.data, b.data, 3 * sizeof *a.data * SIDE * SIDE);

@@ -30,20 +30,19 @@ static void drop(void) {
 
 /* As if a scene of these had just been read. */
 static void take(abbe_view_files *files, size_t count) {
-  abbe_view_scene_news news = {.file_count = count};
+  OWNED(abbe_view_scene_news, news) = {.file_count = count};
   news.file = calloc(count + 1, sizeof *news.file);
   assert_non_null(news.file);
   for (size_t i = 0; i < count; i++) news.file[i] = strdup(names[i]);
   abbe_view_files_take(files, &news);
   assert_int_equal(files->count, count);
   assert_null(news.file);
-  abbe_view_scene_news_free(&news);
 }
 
 EACH(make, drop);
 
 TEST(a_change_is_told_once) {
-  abbe_view_files files = {0};
+  OWNED(abbe_view_files, files) = {0};
   assert_false(abbe_view_files_changed(&files));
   take(&files, 2);
   assert_false(abbe_view_files_changed(&files));
@@ -52,16 +51,13 @@ TEST(a_change_is_told_once) {
   assert_false(abbe_view_files_changed(&files));
   unlink(names[1]);
   assert_false(abbe_view_files_changed(&files));
-  abbe_view_files_free(&files);
 }
 
 /* One worker reads a file, it changes, and another one reads it: the first has to read again. */
 TEST(what_two_have_read_is_watched_from_the_first) {
-  abbe_view_files files = {0};
-  take(&files, 1);
+  FILLED(abbe_view_files, files, take(&files, 1));
   set_time(names[0], 300);
   take(&files, 2);
   assert_true(abbe_view_files_changed(&files));
   assert_false(abbe_view_files_changed(&files));
-  abbe_view_files_free(&files);
 }

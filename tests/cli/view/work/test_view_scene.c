@@ -34,8 +34,8 @@ static bool take(abbe_view_scene *s, const abbe_view_document *d, bool reload) {
 }
 
 TEST(no_more_than_has_changed) {
-  abbe_view_scene s = {0};
-  abbe_view_document d = gem();
+  OWNED(abbe_view_scene, s) = {0};
+  OWNED(abbe_view_document, d) = gem();
   assert_true(take(&s, &d, false));
   const abbe_scene *first = s.now;
   const abbe_object *objects = s.now->object;
@@ -60,24 +60,20 @@ TEST(no_more_than_has_changed) {
   objects = s.now->object;
   assert_true(take(&s, &d, true));
   assert_ptr_not_equal(s.now->object, objects);
-  abbe_view_document_free(&d);
-  abbe_view_scene_free(&s);
 }
 
 TEST(what_is_refused_leaves_the_scene) {
   static const char *const bad[][2] = {{"lights.lamp.intensity", "-1"},
                                        {"lights.lamp.position", "[0, 0, 0.15]"},
                                        {"objects.gem.material", "cheese"}};
-  abbe_view_scene s = {0};
-  abbe_view_document d = gem();
-  take(&s, &d, false);
+  OWNED(abbe_view_document, d) = gem();
+  FILLED(abbe_view_scene, s, take(&s, &d, false));
   const abbe_object *objects = s.now->object;
   const double power = s.now->light[0].power;
   for (size_t i = 0; i < 3; i++) {
     abbe_view_scene_news news = {0};
     abbe_error why = {0};
-    OWNED(abbe_view_document, wrong);
-    OK(abbe_view_document_copy(&d, &wrong, &error));
+    MADE(abbe_view_document, wrong, abbe_view_document_copy(&d, &wrong, &error));
     set(&wrong, bad[i][0], bad[i][1]);
     assert_int_not_equal(abbe_view_scene_take(&s, &wrong, false, 0, &news, &why), ABBE_OK);
     assert_true(why.text[0] != '\0' && !news.outlined);
@@ -85,6 +81,4 @@ TEST(what_is_refused_leaves_the_scene) {
     assert_near(s.now->light[0].power, power, 0);
     assert_false(take(&s, &d, false));
   }
-  abbe_view_document_free(&d);
-  abbe_view_scene_free(&s);
 }

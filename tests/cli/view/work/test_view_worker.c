@@ -14,13 +14,13 @@ static abbe_view_worker *made(void) {
 
 /* A stage of the gem with its lamp at that place, as few.txt of script/bench-view has it. */
 static void give(abbe_view_worker *w, abbe_view_stage stage, bool warms, double x) {
-  char path[] = ABBE_SOURCE_DIR "/scenes/gem.yaml", place[64];
+  char path[] = ABBE_SOURCE_DIR "/scenes/gem.yaml";
   const abbe_view_document few = {.path = path, .photons = 96, .map_size = 256, .wavelengths = 9};
   abbe_view_request request = {
       .job = {.stage = stage, .light = stage, .warms = warms}, .width = SIDE, .height = SIDE};
   OK(abbe_view_document_copy(&few, &request.document, &error));
-  snprintf(place, sizeof place, "[%.3f, 0.03, 0.295]", x);
-  OK(abbe_view_document_set(&request.document, "lights.lamp.position", place, &error));
+  OK(abbe_view_document_set(&request.document, "lights.lamp.position",
+                            printed("[%.3f, 0.03, 0.295]", x), &error));
   abbe_view_worker_give(w, &request);
 }
 
@@ -34,36 +34,32 @@ static abbe_view_result taken(abbe_view_worker *w) {
 /* The picture; its first three channels are its colour. */
 static abbe_image draw(abbe_view_worker *w, abbe_view_stage stage, bool warms, double x) {
   give(w, stage, warms, x);
-  abbe_view_result result = taken(w);
+  OWNED(abbe_view_result, result) = taken(w);
   if (result.outcome != ABBE_VIEW_DONE) fail_msg("%s", result.sentence);
   const abbe_image out = result.picture;
   result.picture = (abbe_image){0};
-  abbe_view_result_free(&result);
   return out;
 }
 
 static void leave(abbe_view_worker *w, abbe_view_stage stage, bool warms, double x) {
-  abbe_image image = draw(w, stage, warms, x);
-  abbe_image_free(&image);
+  OWNED(abbe_image, image) = draw(w, stage, warms, x);
 }
 
 TEST(whoever_draws_it_a_picture_is_the_same) {
   abbe_view_worker *a = made(), *b = made();
   leave(a, ABBE_VIEW_MOVING, false, 0);
   leave(a, ABBE_VIEW_MOVING, false, 0.01);
-  abbe_image one = draw(a, ABBE_VIEW_BALANCED, false, 0.02);
+  OWNED(abbe_image, one) = draw(a, ABBE_VIEW_BALANCED, false, 0.02);
   leave(b, ABBE_VIEW_MOVING, true, -0.01);
   give(b, ABBE_VIEW_BALANCED, false, 0.02); /* which is told to stop */
   abbe_view_worker_cancel(b);
   abbe_view_result result = taken(b);
   assert_true(result.outcome == ABBE_VIEW_CANCELLED || result.outcome == ABBE_VIEW_LOST);
   abbe_view_result_free(&result);
-  abbe_image other = draw(b, ABBE_VIEW_BALANCED, false, 0.02);
+  OWNED(abbe_image, other) = draw(b, ABBE_VIEW_BALANCED, false, 0.02);
   assert_int_equal(one.channels, other.channels);
   assert_memory_equal(one.data, other.data,
                       one.width * one.height * one.channels * sizeof *one.data);
-  abbe_image_free(&one);
-  abbe_image_free(&other);
   abbe_view_worker_free(a);
   abbe_view_worker_free(b);
 }
@@ -96,13 +92,12 @@ TEST(a_dragged_lamp_leaves_no_ghosts) {
   abbe_view_worker *a = made(), *b = made();
   double was = 0, blended = 0, light = 0;
   leave(a, ABBE_VIEW_MOVING, false, 0);
-  abbe_image now = draw(b, ABBE_VIEW_MOVING, false, 0.04);
+  OWNED(abbe_image, now) = draw(b, ABBE_VIEW_MOVING, false, 0.04);
   for (int i = 1; i < 4; i++) {
-    abbe_image before = draw(a, ABBE_VIEW_MOVING, false, 0.01 * i);
+    OWNED(abbe_image, before) = draw(a, ABBE_VIEW_MOVING, false, 0.01 * i);
     was += 0.25 * beyond(&before, &now);
-    abbe_image_free(&before);
   }
-  abbe_image dragged = draw(a, ABBE_VIEW_MOVING, false, 0.04);
+  OWNED(abbe_image, dragged) = draw(a, ABBE_VIEW_MOVING, false, 0.04);
   for (int i = 0; i < SIDE * SIDE; i++) {
     const double here = luminance(&now, i % SIDE, i / SIDE);
     blended += fabs(luminance(&dragged, i % SIDE, i / SIDE) - here);
@@ -112,8 +107,6 @@ TEST(a_dragged_lamp_leaves_no_ghosts) {
   print_message("%.4f of the light that has moved is where it was; blending moves %.4f of all\n",
                 ghosts / was, blended / light);
   assert_true(was > 0.01 * light && blended > 0.01 * light && ghosts < 0.02 * was);
-  abbe_image_free(&now);
-  abbe_image_free(&dragged);
   abbe_view_worker_free(a);
   abbe_view_worker_free(b);
 }

@@ -6,13 +6,9 @@
 
 #include "base/maths.h"
 
-static const abbe_render_desc units = {.profile = ABBE_PROFILE_WYMAN2006_CIE,
-                                       .width = 16,
-                                       .height = 16,
-                                       .photons = 1024,
-                                       .map_size = 128,
-                                       .fill = ABBE_FILL_GATHER_LIGHT,
-                                       .space = ABBE_RGB_SPACE_XYZ};
+static const abbe_render_desc units =
+    FIELDS(.profile = ABBE_PROFILE_WYMAN2006_CIE, .width = 16, .height = 16, .photons = 1024,
+           .map_size = 128, .fill = ABBE_FILL_GATHER_LIGHT, .space = ABBE_RGB_SPACE_XYZ);
 
 /* A map on the level plane z = 0: where its texels' corners lie, and what they hold. */
 typedef struct floor_map {
@@ -21,16 +17,13 @@ typedef struct floor_map {
 } floor_map;
 
 static inline void make_floor_map(const char *text, const abbe_render_desc *desc, floor_map *out) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_map_layout layout;
   *out = (floor_map){0};
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, desc);
-  draw_frame(renderer);
-  read_map(renderer, 0, &out->image);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, desc);
+  out->image = map_of(renderer, 0);
   abbe_renderer_map_layout(renderer, 0, &layout);
   out->view = layout.view;
-  abbe_renderer_free(renderer);
 }
 
 /* At texels, the first row at the top; false where the ray does not come down to the floor. */

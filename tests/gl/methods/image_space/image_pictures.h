@@ -13,31 +13,21 @@
   "- {name: mirror, shape: rectangle, width: 0.1, height: 0.1, mirror: " share                     \
   ", transform: [{rotate: {axis: [0, 1, 0], angle: 60}}, {translate: [0.1, 0, 0.15]}]}\n"
 
-static const abbe_render_desc small = {.profile = ABBE_PROFILE_WYMAN2006_CIE,
-                                       .width = 64,
-                                       .height = 64,
-                                       .photons = 512,
-                                       .map_size = 128,
-                                       .supersample = 1,
-                                       .upsample = 1,
-                                       .space = ABBE_RGB_SPACE_XYZ};
+static const abbe_render_desc small =
+    FIELDS(.profile = ABBE_PROFILE_WYMAN2006_CIE, .width = 64, .height = 64, .photons = 512,
+           .map_size = 128, .supersample = 1, .upsample = 1, .space = ABBE_RGB_SPACE_XYZ);
 
 static inline double map_energy(const abbe_scene *scene, const abbe_render_desc *desc) {
-  OWNED(abbe_image, map) = {0};
-  abbe_renderer *renderer = make_renderer(scene, desc);
-  draw_frame(renderer);
-  read_map(renderer, 0, &map);
+  abbe_renderer *renderer = drawn_renderer(scene, desc);
+  OWNED(abbe_image, map) = map_of(renderer, 0);
   abbe_renderer_free(renderer);
-  const double sum = image_sum(&map, 1);
-  return sum;
+  return image_sum(&map, 1);
 }
 
 static inline void make_picture(const abbe_scene *scene, const abbe_render_desc *desc,
                                 abbe_image *out) {
-  abbe_renderer *renderer = make_renderer(scene, desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, out);
-  abbe_renderer_free(renderer);
+  HELD(abbe_renderer, renderer) = drawn_renderer(scene, desc);
+  *out = picture_of(renderer);
   assert_finite(out);
 }
 

@@ -12,9 +12,8 @@ TEST(gathers_have_their_bias) {
   static const char text[] =
       "materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"
       "lights: [{name: lamp, kind: spot, position: [0, 0, 0.6], target: [0, 0, 0], intensity: 1, "
-      "cone: 60}]\n" FLOOR
-      "- {name: pane, shape: box, size: [0.6, 0.6, 0.001], transform: [{translate: [0, 0, 0.3]}], "
-      "material: flat}\n";
+      "cone: 60}]\n" FLOOR "- {name: pane, shape: box, size: [0.6, 0.6, 0.001], transform: "
+      "[{translate: [0, 0, 0.3]}], material: flat}\n";
   const double h = 0.6, through = 0.9216;
   for (size_t size = 32; size <= 128; size *= 2) {
     abbe_render_desc desc = units;
@@ -30,9 +29,9 @@ TEST(gathers_have_their_bias) {
       off += (light / exact - 1) / 16;
       known += 0.5 * sigma2 * (15 * r2 / (d2 * d2) - 6 / d2) / 16;
     }
-    print_message("%zu texels: gathered light off by %.4f; half sigma^2 times the Laplacian is "
-                  "%.4f\n",
-                  size, off, known);
+    print_message(
+        "%zu texels: gathered light off by %.4f; half sigma^2 times the Laplacian is %.4f\n", size,
+        off, known);
     assert_near(off, known, 0.003 + 0.1 * fabs(known));
     abbe_image_free(&m.image);
   }

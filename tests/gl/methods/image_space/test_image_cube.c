@@ -14,12 +14,9 @@ enum { SIDE = 192, FACES = ABBE_LIGHT_CUBE_FACES };
 
 static const double lamp[3] = {0.1, 0.05, -0.07};
 
-static const abbe_render_desc around = {.profile = ABBE_PROFILE_SHAH2007_CIE,
-                                        .width = 16,
-                                        .height = 16,
-                                        .photons = 192,
-                                        .map_size = SIDE,
-                                        .space = ABBE_RGB_SPACE_XYZ};
+static const abbe_render_desc around =
+    FIELDS(.profile = ABBE_PROFILE_SHAH2007_CIE, .width = 16, .height = 16, .photons = 192,
+           .map_size = SIDE, .space = ABBE_RGB_SPACE_XYZ);
 
 /* The light on the faces as the window has it, [face][y][x][4], and where its texels look. */
 typedef struct cube_map {
@@ -28,8 +25,7 @@ typedef struct cube_map {
 } cube_map;
 
 static void draw_cube(const abbe_scene *scene, const abbe_render_desc *desc, cube_map *out) {
-  abbe_renderer *renderer = make_renderer(scene, desc);
-  draw_frame(renderer);
+  HELD(abbe_renderer, renderer) = drawn_renderer(scene, desc);
   const abbe_shah2007 *shah = (const abbe_shah2007 *)renderer->method;
   assert_int_equal(shah->base.light.faces, FACES);
   for (int f = 0; f < FACES; f++) out->view[f] = shah->base.light.face[f].view;
@@ -40,10 +36,9 @@ static void draw_cube(const abbe_scene *scene, const abbe_render_desc *desc, cub
   gl->BindTexture(GL_TEXTURE_2D_ARRAY, shah->map);
   gl->GetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA, GL_FLOAT, out->texel);
   OK(abbe_gl_check(gl, "the reading of the map", &error));
-  abbe_renderer_free(renderer);
 }
 
-static void free_cube(cube_map *m) {
+static void cube_map_free(cube_map *m) {
   free(m->texel);
   *m = (cube_map){0};
 }
@@ -91,12 +86,12 @@ static size_t add_pane(const double d[3], const char *of, char *text, size_t use
   const double across = hypot(d[0], d[1]), angle = atan2(across, d[2]) * 180 / 3.14159265358979324;
   const bool turned = across > 1e-9;
   const double axis[3] = {turned ? -d[1] : 1, turned ? d[0] : 0, 0};
-  used += (size_t)snprintf(text + used, size - used,
-                           "- {name: pane%zu, shape: box, size: [0.2, 0.2, 0.001], %s, "
-                           "transform: [{rotate: {axis: [%.9g, %.9g, 0], angle: %.9g}}, "
-                           "{translate: [%.9g, %.9g, %.9g]}]}\n",
-                           used, of, axis[0], axis[1], angle, lamp[0] + 0.3 * d[0],
-                           lamp[1] + 0.3 * d[1], lamp[2] + 0.3 * d[2]);
+  used += (size_t)snprintf(
+      text + used, size - used,
+      "- {name: pane%zu, shape: box, size: [0.2, 0.2, 0.001], %s, transform: [{rotate: {axis: "
+      "[%.9g, %.9g, 0], angle: %.9g}}, {translate: [%.9g, %.9g, %.9g]}]}\n",
+      used, of, axis[0], axis[1], angle, lamp[0] + 0.3 * d[0], lamp[1] + 0.3 * d[1],
+      lamp[2] + 0.3 * d[2]);
   assert_true(used < size);
   return used;
 }
@@ -114,8 +109,6 @@ GROUP(make_context, free_context);
 /* Light of all panes, and what a texel well within one of them is of the lamp's: by how far it is
  * from the seams. */
 TEST(what_is_sent_arrives_all_around) {
-  OWNED(abbe_scene, scene) = {0};
-  cube_map m;
   char text[4096] = ROOM;
   size_t used = strlen(text);
   double sum[2] = {0}, worst = 0;
@@ -124,8 +117,8 @@ TEST(what_is_sent_arrives_all_around) {
     used = add_pane(pane[i], "material: flat", text, used, sizeof text);
   abbe_render_desc desc = around;
   desc.photons = 256; /* denser than texels, else the two grids beat */
-  load_text(text, &scene);
-  draw_cube(&scene, &desc, &m);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  FILLED(cube_map, m, draw_cube(&scene, &desc, &m));
   const double all = cube_light(&m, NULL) / (PANES * pane_light());
   for (int i = 0; i < FACES * SIDE * SIDE; i++) {
     double d[3], light, area, nearest = -1, second = 0;
@@ -147,33 +140,29 @@ TEST(what_is_sent_arrives_all_around) {
     worst = fmax(worst, fabs(share - 1));
   }
   assert_true(count[0] > 1000 && count[1] > 50);
-  print_message("%.4f of the light; within panes %.4f, beside seams %.4f of it, off by %.4f at "
-                "the most\n",
-                all, sum[0] / (double)count[0], sum[1] / (double)count[1], worst);
+  print_message(
+      "%.4f of the light; within panes %.4f, beside seams %.4f of it, off by %.4f at the most\n",
+      all, sum[0] / (double)count[0], sum[1] / (double)count[1], worst);
   assert_near(all, 1, 0.02);
   assert_near(sum[0] / (double)count[0], 1, 0.01);
   assert_near(sum[1] / (double)count[1], 1, 0.01);
   assert_true(worst < 0.05);
-  free_cube(&m);
 }
 
 /* One pane on a corner: the light sees it through one view, and three faces have its light. */
 TEST(a_corner_has_its_light) {
-  OWNED(abbe_scene, scene) = {0};
   char text[1024] = ROOM;
   add_pane(pane[PANES - 1], "material: flat", text, strlen(text), sizeof text);
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   for (size_t low_pass = 0; low_pass <= 3; low_pass += 3) {
     abbe_render_desc desc = around;
-    cube_map m;
     double where[3];
     desc.low_pass = low_pass;
-    draw_cube(&scene, &desc, &m);
+    FILLED(cube_map, m, draw_cube(&scene, &desc, &m));
     const double sum = cube_light(&m, where);
     print_message("a corner's pane: %.4f of its light\n", sum / pane_light());
     assert_near(sum / pane_light(), 1, 0.02);
     for (int k = 1; k < 3; k++) assert_near(where[k] / where[0], 1, 0.01);
-    free_cube(&m);
   }
 }
 
@@ -182,20 +171,17 @@ TEST(a_mirror_lights_what_is_behind_the_lamp) {
   static const char text[] =
       ROOM "- {name: mirror, shape: rectangle, width: 0.1, height: 0.1, mirror: 0.8, transform: "
            "[{rotate: {axis: [0, 1, 0], angle: -90}}, {translate: [0.5, 0.05, -0.07]}]}\n";
-  OWNED(abbe_scene, scene) = {0};
-  cube_map m;
   abbe_render_desc desc = around;
   double where[3];
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   desc.estimator = ABBE_ESTIMATOR_RATIO;
   desc.iterations = 12;
-  draw_cube(&scene, &desc, &m);
+  FILLED(cube_map, m, draw_cube(&scene, &desc, &m));
   const double a = 0.05, h = 0.4, sent = 0.8 * 4 * asin(a * a / (a * a + h * h));
   const double sum = cube_light(&m, where);
   print_message("behind the lamp: %.4f of what the mirror sends\n", sum / sent);
   assert_near(sum / sent, 1, 0.02);
   assert_true(where[0] / sum < -0.95);
-  free_cube(&m);
 }
 
 /* A ball in an edge's direction bends light across it: every estimator brings it to where the exact
@@ -206,16 +192,14 @@ TEST(estimators_land_across_seams) {
   static const abbe_estimator kinds[] = {ABBE_ESTIMATOR_EXACT,    ABBE_ESTIMATOR_SHAH,
                                          ABBE_ESTIMATOR_AXIS,     ABBE_ESTIMATOR_SECANT,
                                          ABBE_ESTIMATOR_IMPOSTOR, ABBE_ESTIMATOR_RATIO};
-  OWNED(abbe_scene, scene) = {0};
   double exact = 0, at[3] = {0};
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     abbe_render_desc desc = around;
-    cube_map m;
     double where[3];
     desc.estimator = kinds[i];
     desc.iterations = 8;
-    draw_cube(&scene, &desc, &m);
+    FILLED(cube_map, m, draw_cube(&scene, &desc, &m));
     const double sum = cube_light(&m, where);
     if (i == 0) exact = sum;
     if (i == 0) memcpy(at, where, sizeof at);
@@ -227,25 +211,22 @@ TEST(estimators_land_across_seams) {
      * more than their integral */
     assert_near(sum / exact, i == 1 || i == 2 ? 1.04 : 1, 0.01);
     for (int k = 0; k < 3; k++) assert_near(where[k] / sum, at[k] / exact, 0.002);
-    free_cube(&m);
   }
 }
 
 /* A lamp above a floor: the picture by one view and by six. */
 TEST(one_view_and_six_agree) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_image picture[2] = {{0}};
   double sum[2] = {0}, off = 0;
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
   for (size_t i = 0; i < 2; i++) {
     abbe_render_desc desc = around;
     desc.width = desc.height = 48;
     desc.map_size = 768;
     desc.photons = i == 0 ? 768 : 192; /* the one view is as wide as the floor */
     desc.faces = i == 0 ? 1 : 6;
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
-    draw_frame(renderer);
-    read_picture(renderer, false, &picture[i]);
+    abbe_renderer *renderer = drawn_renderer(&scene, &desc);
+    picture[i] = picture_of(renderer);
     abbe_renderer_free(renderer);
     sum[i] = image_sum(&picture[i], 1);
   }
@@ -261,13 +242,12 @@ TEST(one_view_and_six_agree) {
  * caustics mapping. */
 TEST(photons_in_image_space_agree) {
   static const abbe_fill fills[] = {ABBE_FILL_TRIANGLES, ABBE_FILL_QUADS, ABBE_FILL_GATHER_EYE};
-  OWNED(abbe_scene, scene) = {0};
   OWNED(abbe_image, right) = {0};
   char text[4096] = ROOM;
   size_t used = strlen(text);
   for (int i = 0; i < PANES; i++)
     used = add_pane(pane[i], "material: flat", text, used, sizeof text);
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) = scene_of(text);
   for (size_t i = 0; i <= sizeof fills / sizeof *fills; i++) {
     abbe_render_desc desc = around;
     OWNED(abbe_image, picture) = {0};
@@ -276,9 +256,8 @@ TEST(photons_in_image_space_agree) {
       desc.profile = ABBE_PROFILE_WYMAN2006_CIE;
       desc.fill = fills[i - 1];
     }
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
-    draw_frame(renderer);
-    read_picture(renderer, false, i == 0 ? &right : &picture);
+    abbe_renderer *renderer = drawn_renderer(&scene, &desc);
+    *(i == 0 ? &right : &picture) = picture_of(renderer);
     abbe_renderer_free(renderer);
     if (i == 0) continue;
     double off = 0;
@@ -292,20 +271,17 @@ TEST(photons_in_image_space_agree) {
 
 /* As printed, too; what a cube is not for, and who takes it by themselves. */
 TEST(who_has_a_cube) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_plan plan;
-  abbe_renderer *renderer = NULL;
   abbe_image map = {0};
   cube_map m;
   abbe_render_desc desc = around;
-  load_text(ROOM BALL("crown"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(ROOM BALL("crown"));
   desc.profile = ABBE_PROFILE_SHAH2007;
   desc.space = ABBE_RGB_SPACE_REC709;
   draw_cube(&scene, &desc, &m);
   assert_true(cube_light(&m, NULL) > 0);
-  free_cube(&m);
-  renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
+  cube_map_free(&m);
+  abbe_renderer *renderer = drawn_renderer(&scene, &desc);
   REFUSED(ABBE_UNSUPPORTED, "--faces 1", abbe_renderer_read_map(renderer, 0, true, &map, &error));
   abbe_renderer_free(renderer);
   desc.map_size = 32;
@@ -314,12 +290,12 @@ TEST(who_has_a_cube) {
           abbe_renderer_make(context, &scene, &desc, &renderer, &error));
   desc.low_pass = 0;
   abbe_scene_free(&scene);
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  scene = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
   OK(abbe_plan_make(&scene, &around, &plan, &error));
   assert_true(plan.desc.faces <= 1); /* one view holds the floor */
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);
-  load_text(CAMERA SUN FLOOR BALL("crown"), &scene);
+  scene = scene_of(CAMERA SUN FLOOR BALL("crown"));
   desc.faces = 6;
   REFUSED(ABBE_UNSUPPORTED, "directional", abbe_plan_make(&scene, &desc, &plan, &error));
   desc.faces = 3;

@@ -75,8 +75,8 @@ TEST(a_ball_shines_alike_everywhere) {
       "lights: [{name: lamp, kind: spot, position: [0, 0, 2], target: [0, 0, 0], intensity: 4, "
       "cone: 20}]\n"
       "objects:\n- {name: floor, shape: rectangle, width: 1, height: 1, reflectance: 0.5}\n"
-      "- {name: ball, shape: sphere, radius: 0.02, levels: 6, mirror: 0.8, transform: "
-      "[{translate: [0, 0, 0.2]}]}\n";
+      "- {name: ball, shape: sphere, radius: 0.02, levels: 6, mirror: 0.8, transform: [{translate: "
+      "[0, 0, 0.2]}]}\n";
   const double away = 1.8, intensity = 0.8 * 4 / (away * away) * 0.02 * 0.02 / 4;
   abbe_render_desc desc = units;
   floor_map m;
@@ -105,23 +105,20 @@ TEST(a_ball_shines_alike_everywhere) {
 
 /* A mirror `at` m off its place, seen by what it sends to the floor alone. */
 static void load_moved(double at, double share, abbe_scene *out) {
-  char text[1024];
-  snprintf(text, sizeof text,
-           "materials: glass.yaml\ncamera: {eye: [0.9, 0, 0.6], target: [0.34, 0, 0], fov: "
-           "22}\n" POINT_LIGHT FLOOR
-           "- {name: mirror, shape: rectangle, width: 0.06, height: 0.06, mirror: %.9g, transform: "
-           "[{rotate: {axis: [0, 1, 0], angle: 60}}, {translate: [0.09, %.9g, 0.15]}]}\n",
-           share, at);
-  load_text(text, out);
+  *out = scene_of(printed(
+      "materials: glass.yaml\ncamera: {eye: [0.9, 0, 0.6], target: [0.34, 0, 0], fov: "
+      "22}\n" POINT_LIGHT FLOOR
+      "- {name: mirror, shape: rectangle, width: 0.06, height: 0.06, mirror: %.9g, transform: "
+      "[{rotate: {axis: [0, 1, 0], angle: 60}}, {translate: [0.09, %.9g, 0.15]}]}\n",
+      share, at));
 }
 
 /* The next frame's picture, light's middle and variance in it, in pixels across; less `dark`. */
 static void moments(abbe_renderer *renderer, const abbe_image *dark, double out[2]) {
-  OWNED(abbe_image, picture) = {0};
   double sum = 0, first = 0, second = 0;
   abbe_renderer_redraw(renderer);
   draw_frame(renderer);
-  read_picture(renderer, false, &picture);
+  OWNED(abbe_image, picture) = picture_of(renderer);
   for (size_t i = 0; i < picture.width * picture.height; i++) {
     const double way = (double)(i % picture.width);
     const double light = (double)picture.data[picture.channels * i + 1] -
@@ -147,7 +144,7 @@ TEST(motion_lags) {
   desc.wavelengths = 1;
   desc.fill = ABBE_FILL_GATHER_EYE;
   for (int pass = 0; pass < 2; pass++) {
-    abbe_renderer *renderer = NULL;
+    HELD(abbe_renderer, renderer) = NULL;
     desc.history = pass == 0 ? 1 : 4;
     for (int k = 0; k < FRAMES; k++) {
       if (pass == 0) {
@@ -155,10 +152,8 @@ TEST(motion_lags) {
         load_moved(0.003 * k - 0.01, 0.8, &scene[k]);
         abbe_render_desc few = desc; /* a mirror that mirrors nothing sends no light */
         few.photons = 8;
-        abbe_renderer *other = make_renderer(&dark[k], &few);
-        draw_frame(other);
-        read_picture(other, false, &black[k]);
-        abbe_renderer_free(other);
+        HELD(abbe_renderer, other) = drawn_renderer(&dark[k], &few);
+        black[k] = picture_of(other);
       }
       if (renderer == NULL)
         renderer = make_renderer(&scene[k], &desc);
@@ -166,7 +161,6 @@ TEST(motion_lags) {
         OK(abbe_renderer_change(renderer, &scene[k], &desc, &error));
       moments(renderer, &black[k], pass == 0 ? own[k] : kept[k]);
     }
-    abbe_renderer_free(renderer);
   }
   double lag = 0, more = 0, v = (own[FRAMES - 1][0] - own[1][0]) / (FRAMES - 2);
   for (int k = 4; k < FRAMES; k++) {
@@ -194,13 +188,12 @@ static double noise(const abbe_scene *scene, size_t history) {
   double variance = 0;
   unsigned seed = 12345;
   abbe_render_desc desc = units;
-  abbe_renderer *renderer = NULL;
+  HELD(abbe_renderer, renderer) = NULL;
   memset(sum, 0, sizeof sum);
   desc.photons = 96;
   desc.map_size = SIDE;
   desc.history = history;
   for (size_t k = 0; k < (SAMPLES + 1) * history; k++) {
-    OWNED(abbe_image, map) = {0};
     for (int axis = 0; axis < 2; axis++) {
       seed = seed * 1664525u + 1013904223u;
       desc.photon_shift[axis] = (double)(seed >> 8) / 0x1p24 - 0.5;
@@ -211,7 +204,7 @@ static double noise(const abbe_scene *scene, size_t history) {
       OK(abbe_renderer_change(renderer, scene, &desc, &error));
     draw_frame(renderer);
     if (k < history || k % history != history - 1) continue;
-    read_map(renderer, 0, &map);
+    OWNED(abbe_image, map) = map_of(renderer, 0);
     for (size_t i = 0; i < SIDE * SIDE; i++) {
       const double light = (double)map.data[map.channels * i + 1];
       sum[2 * i] += light / SAMPLES;
@@ -219,14 +212,12 @@ static double noise(const abbe_scene *scene, size_t history) {
     }
   }
   for (size_t i = 0; i < SIDE * SIDE; i++) variance += sum[2 * i + 1] - sum[2 * i] * sum[2 * i];
-  abbe_renderer_free(renderer);
   return variance / (SIDE * SIDE);
 }
 
 /* T4. Frames whose noise is independent leave a quarter of its variance. */
 TEST(noise_goes_by_four) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("flat"));
   const double one = noise(&scene, 1), four = noise(&scene, 4);
   print_message("variance of four frames: %.3f of one's\n", four / one);
   assert_near(four / one, 0.25, 0.07);

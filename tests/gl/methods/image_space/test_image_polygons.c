@@ -7,17 +7,15 @@ GROUP(make_context, free_context);
 /* As printed, by beams that are all alike: under the lamp, in the middle of a field of 90 degrees,
  * a cell has 4 / N^2 sr, and the mean one 2 pi / 3 / N^2. */
 TEST(even_beams) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_image, picture) = {0};
   double spread;
-  load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR PANE("flat"));
   abbe_render_desc desc = small;
   desc.width = desc.height = 192;
   desc.profile = ABBE_PROFILE_WYMAN2006;
   desc.space = ABBE_RGB_SPACE_REC709;
   desc.fill = ABBE_FILL_QUADS;
   desc.polygons = ABBE_POLYGONS_EVEN;
-  make_picture(&scene, &desc, &picture);
+  FILLED(abbe_image, picture, make_picture(&scene, &desc, &picture));
   const double mean = middle(&picture, &spread), share = 3.14159265358979 / 6 / pow(0.99, 3);
   print_message("even beams: %.4f\n", mean);
   assert_near(mean, 0.5 * (0.99 * share + 0.1), 0.015);
@@ -29,12 +27,10 @@ TEST(polygons_of_other_kinds) {
   static const unsigned kinds[] = {ABBE_POLYGONS_CORNERS, ABBE_POLYGONS_CULLED,
                                    ABBE_POLYGONS_IN_LIGHT,
                                    ABBE_POLYGONS_CORNERS | ABBE_POLYGONS_IN_LIGHT};
-  OWNED(abbe_scene, pane) = {0};
-  OWNED(abbe_scene, mirror) = {0};
   abbe_image picture = {0};
   double spread, own_spread;
-  load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &pane);
-  load_text(CAMERA POINT_LIGHT FLOOR MIRROR("0.8"), &mirror);
+  OWNED(abbe_scene, pane) = scene_of(CAMERA POINT_LIGHT FLOOR PANE("flat"));
+  OWNED(abbe_scene, mirror) = scene_of(CAMERA POINT_LIGHT FLOOR MIRROR("0.8"));
   abbe_render_desc desc = small;
   desc.width = desc.height = 192;
   for (int f = 0; f < 2; f++) {
@@ -60,11 +56,9 @@ TEST(polygons_of_other_kinds) {
 /* A step under the pane: one column of cells lies between it and the floor. It is under the lamp,
  * where a column has a little more light than its share. */
 TEST(polygons_between_surfaces) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR
-            "- {name: step, shape: rectangle, width: 1, height: 2, reflectance: 0.5, transform: "
-            "[{translate: [0.561, 0, 0.1]}]}\n" PANE("flat"),
-            &scene);
+  OWNED(abbe_scene, scene) = scene_of(
+      CAMERA POINT_LIGHT FLOOR "- {name: step, shape: rectangle, width: 1, height: 2, reflectance: "
+                               "0.5, transform: [{translate: [0.561, 0, 0.1]}]}\n" PANE("flat"));
   for (int f = 0; f < 2; f++) {
     abbe_render_desc desc = small;
     desc.fill = f == 0 ? ABBE_FILL_QUADS : ABBE_FILL_TRIANGLES;
@@ -84,22 +78,18 @@ TEST(polygons_between_surfaces) {
 
 /* A mirror's light on the floor, seen from nearby. */
 static void load_mirror(const char *share, abbe_scene *out) {
-  char text[1024];
-  snprintf(text, sizeof text,
-           "materials: glass.yaml\ncamera: {eye: [0.9, 0, 0.6], target: [0.34, 0, 0], fov: "
-           "22}\n" POINT_LIGHT FLOOR MIRROR("%s"),
-           share);
-  load_text(text, out);
+  *out = scene_of(
+      printed("materials: glass.yaml\ncamera: {eye: [0.9, 0, 0.6], target: [0.34, 0, 0], fov: "
+              "22}\n" POINT_LIGHT FLOOR MIRROR("%s"),
+              share));
 }
 
 /* G4. What the camera's image and the light's gather draws near as pixels and texels shrink: the
  * mean difference by the mean light of the mirror. */
 TEST(gathers_agree) {
-  OWNED(abbe_scene, dark) = {0};
-  OWNED(abbe_scene, bright) = {0};
   double apart[2];
-  load_mirror("0.0001", &dark);
-  load_mirror("0.8", &bright);
+  FILLED(abbe_scene, dark, load_mirror("0.0001", &dark));
+  FILLED(abbe_scene, bright, load_mirror("0.8", &bright));
   for (int k = 0; k < 2; k++) {
     abbe_image picture[3];
     abbe_render_desc desc = small;

@@ -74,8 +74,8 @@ static GLuint make_program(const abbe_gl *gl, const world *w, abbe_estimator kin
       "#define ESTIMATOR_SECANT 4\n#define ESTIMATOR_FALSE_POSITION 5\n"
       "#define ESTIMATOR_ILLINOIS 6\n#define ESTIMATOR_BISECTION 7\n"
       "#define ESTIMATOR_MARCH 8\n#define ESTIMATOR_IMPOSTOR 9\n#define ESTIMATOR_RATIO 10\n"
-      "#define ESTIMATOR_EXACT 11\n#define ESTIMATOR %d\n#define ITERATIONS %zu\n%s%s"
-      "#include \"view.glsl\"\nuniform vec4 rows[6];\n"
+      "#define ESTIMATOR_EXACT 11\n#define ESTIMATOR %d\n#define ITERATIONS %zu\n%s%s#include "
+      "\"view.glsl\"\nuniform vec4 rows[6];\n"
       "View places_view() { return View(rows[0], rows[1], rows[2], rows[3], rows[4], rows[5]); }\n"
       "vec3 places_axis(vec3 at) { return places_view().forward.xyz; }\n"
       "%s#include \"image_search.glsl\"\n"
@@ -106,12 +106,9 @@ static void compare(abbe_estimator kind, size_t iterations, bool printed, const 
       o[k] = (double)in[i][k];
       d[k] = (double)in[i][4 + k];
     }
-    const abbe_estimator_desc desc = {.kind = kind,
-                                      .iterations = iterations,
-                                      .printed = printed,
-                                      .view = &w->view,
-                                      .lookup = look,
-                                      .user = (void *)w};
+    const abbe_estimator_desc desc =
+        FIELDS(.kind = kind, .iterations = iterations, .printed = printed, .view = &w->view,
+               .lookup = look, .user = (void *)w);
     const abbe_estimate e = abbe_estimator_run(&desc, o, d);
     *alike += e.found == (out[i][3] > 0);
     if (!e.found || out[i][3] == 0) continue;

@@ -14,8 +14,7 @@ GROUP(make_context, free_context);
 /* A pane turns no light: each reconstruction's map holds the lamp's power through it, less two
  * reflections. Polygons miss half a cell all around. */
 TEST(what_arrives_is_what_was_sent) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR PANE("flat"));
   /* as of the thesis's passes, whose test says how much it is */
   const double h = 0.2995, a = 0.15, angle = 4 * asin(a * a / (a * a + h * h));
   for (int k = 0; k < FILLS; k++) {
@@ -30,14 +29,13 @@ TEST(what_arrives_is_what_was_sent) {
 /* Behind a thin pane, where the shadow map knows a shadow, the ratio of solid angles is 1, and the
  * picture is that of the light through it. Gathers of a constant field are constant. */
 TEST(a_pane_is_direct_light) {
-  OWNED(abbe_scene, scene) = {0};
-  abbe_image right = {0}, picture = {0};
+  abbe_image picture = {0};
   double spread, own_spread;
-  load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR PANE("flat"));
   abbe_render_desc desc = small;
   desc.width = desc.height = 192;
   desc.profile = ABBE_PROFILE_DEFAULT;
-  make_picture(&scene, &desc, &right);
+  FILLED(abbe_image, right, make_picture(&scene, &desc, &right));
   const double direct = middle(&right, &own_spread);
   assert_true(direct > 0);
   for (int k = 0; k < FILLS; k++) {
@@ -53,7 +51,6 @@ TEST(a_pane_is_direct_light) {
     if (fills[k] != ABBE_FILL_POINTS) assert_true(spread < own_spread + 0.06);
     abbe_image_free(&picture);
   }
-  abbe_image_free(&right);
 }
 
 /* As printed, likewise: shadowed by the pane and lit by its photons as the floor is beside it, for
@@ -61,10 +58,9 @@ TEST(a_pane_is_direct_light) {
 TEST(a_pane_as_printed) {
   static const abbe_direction directions[] = {ABBE_DIRECTION_OWN, ABBE_DIRECTION_MEAN,
                                               ABBE_DIRECTION_DIRECT};
-  OWNED(abbe_scene, scene) = {0};
   abbe_image picture = {0};
   double spread;
-  load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR PANE("flat"));
   for (int k = 0; k < FILLS; k++)
     for (int i = 0; i < 3; i++) {
       abbe_render_desc desc = small;
@@ -86,8 +82,7 @@ TEST(a_pane_as_printed) {
 /* A flat mirror sends all of its share of the lamp's light to the floor, as the default profile has
  * it. */
 TEST(a_flat_mirror_has_the_lamps_light) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR MIRROR("0.8"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR MIRROR("0.8"));
   abbe_render_desc desc = small;
   desc.photons = 1024;
   double sum[FILLS];
@@ -134,10 +129,8 @@ TEST(directions_differ_by_their_cosines) {
   desc.profile = ABBE_PROFILE_WYMAN2006;
   desc.space = ABBE_RGB_SPACE_REC709;
   for (int i = 0; i < 3; i++) {
-    OWNED(abbe_scene, scene) = {0};
-    load_text(i == 0 ? CAMERA POINT_LIGHT FLOOR MIRROR("0.0001")
-                     : CAMERA POINT_LIGHT FLOOR MIRROR("0.8"),
-              &scene);
+    OWNED(abbe_scene, scene) = scene_of(i == 0 ? CAMERA POINT_LIGHT FLOOR MIRROR("0.0001")
+                                               : CAMERA POINT_LIGHT FLOOR MIRROR("0.8"));
     desc.direction = i == 1 ? ABBE_DIRECTION_OWN : ABBE_DIRECTION_DIRECT;
     make_picture(&scene, &desc, &picture[i]);
     abbe_camera_view_fit(&scene, &desc, &camera);
@@ -163,8 +156,7 @@ TEST(directions_differ_by_their_cosines) {
 
 /* One photon in 32 x 32 texels: as printed all are dropped, in units none is. */
 TEST(sparse_neighbourhoods) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR PANE("flat"));
   abbe_render_desc desc = small;
   desc.photons = 64;
   desc.map_size = 1024;
@@ -183,20 +175,15 @@ static void next_frame(abbe_renderer *renderer, abbe_image *map) {
   abbe_renderer_redraw(renderer);
   draw_frame(renderer);
   abbe_image_free(map);
-  read_map(renderer, 0, map);
+  *map = map_of(renderer, 0);
 }
 
 /* A still scene is the same frame by frame as printed; in units it is the mean of four grids. */
 TEST(a_still_scene) {
-  OWNED(abbe_scene, scene) = {0};
-  abbe_image first = {0}, map = {0}, one = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
-  abbe_render_desc desc = {.profile = ABBE_PROFILE_WYMAN2006,
-                           .width = 16,
-                           .height = 16,
-                           .photons = 256,
-                           .map_size = 128,
-                           .history = 4};
+  OWNED(abbe_image, first) = {0}, map = {0}, one = {0};
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("flat"));
+  abbe_render_desc desc = FIELDS(.profile = ABBE_PROFILE_WYMAN2006, .width = 16, .height = 16,
+                                 .photons = 256, .map_size = 128, .history = 4);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   next_frame(renderer, &first);
   for (int k = 0; k < 4; k++) next_frame(renderer, &map);
@@ -224,21 +211,16 @@ TEST(a_still_scene) {
     apart = fmax(apart, fabs((double)one.data[3 * i + 1] - mean[i]));
   }
   assert_true(apart > 1e-3 * most); /* the grids do differ */
-  abbe_image_free(&first);
-  abbe_image_free(&map);
-  abbe_image_free(&one);
 }
 
 /* A mirror that is uncovered shows by quarters, and one that is covered goes by them. */
 static void step(abbe_profile profile, bool up) {
-  OWNED(abbe_scene, dark) = {0};
-  OWNED(abbe_scene, bright) = {0};
   OWNED(abbe_image, map) = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR MIRROR("0.0001"), &dark);
-  load_text(CAMERA POINT_LIGHT FLOOR MIRROR("0.8"), &bright);
+  OWNED(abbe_scene, dark) = scene_of(CAMERA POINT_LIGHT FLOOR MIRROR("0.0001"));
+  OWNED(abbe_scene, bright) = scene_of(CAMERA POINT_LIGHT FLOOR MIRROR("0.8"));
   abbe_render_desc desc = {
       .profile = profile, .width = 16, .height = 16, .photons = 512, .map_size = 64, .history = 4};
-  abbe_renderer *renderer = make_renderer(&bright, &desc);
+  HELD(abbe_renderer, renderer) = make_renderer(&bright, &desc);
   for (int k = 0; k < 4; k++) next_frame(renderer, &map);
   const double full = image_sum(&map, 1);
   if (up) {
@@ -254,7 +236,6 @@ static void step(abbe_profile profile, bool up) {
                   k);
     assert_near(share, up ? 0.25 * k : 1 - 0.25 * k, 0.02);
   }
-  abbe_renderer_free(renderer);
 }
 
 TEST(steps) {
@@ -268,29 +249,23 @@ TEST(steps) {
 static void measure_motion(size_t photons, size_t history, double *flicker, double *ghost) {
   abbe_image map[2] = {{0}}, plain = {0};
   abbe_renderer *renderer = NULL;
-  abbe_render_desc desc = {.profile = ABBE_PROFILE_WYMAN2006_CIE,
-                           .width = 16,
-                           .height = 16,
-                           .photons = photons,
-                           .map_size = 256,
-                           .history = history};
+  abbe_render_desc desc = FIELDS(.profile = ABBE_PROFILE_WYMAN2006_CIE, .width = 16, .height = 16,
+                                 .photons = photons, .map_size = 256, .history = history);
   abbe_scene scene[8] = {{0}};
   double change = 0, all = 0, nowhere = 0, light = 0;
   for (int k = 0; k < 8; k++) {
-    char text[1024];
-    snprintf(text, sizeof text,
-             CAMERA POINT_LIGHT FLOOR
-             "- {name: ball, shape: sphere, radius: 0.08, levels: 4, transform: [{translate: "
-             "[0.00%02d, 0, 0.2]}], material: flat}\n",
-             5 * k);
-    load_text(text, &scene[k]);
+    scene[k] = scene_of(
+        printed(CAMERA POINT_LIGHT FLOOR
+                "- {name: ball, shape: sphere, radius: 0.08, levels: 4, transform: [{translate: "
+                "[0.00%02d, 0, 0.2]}], material: flat}\n",
+                5 * k));
     if (k == 0)
       renderer = make_renderer(&scene[k], &desc);
     else
       OK(abbe_renderer_change(renderer, &scene[k], &desc, &error));
     draw_frame(renderer);
     abbe_image_free(&map[k & 1]);
-    read_map(renderer, 0, &map[k & 1]);
+    map[k & 1] = map_of(renderer, 0);
     if (k < 4) continue;
     abbe_render_desc alone = desc;
     alone.history = 1;
@@ -327,9 +302,8 @@ TEST(flicker_and_ghost) {
 
 /* What it does not know. */
 TEST(refusals) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_renderer *renderer = NULL;
-  load_text(CAMERA SUN FLOOR BALL("flat"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA SUN FLOOR BALL("flat"));
   REFUSED(ABBE_UNSUPPORTED, "directional",
           abbe_renderer_make(context, &scene, &small, &renderer, &error));
 }

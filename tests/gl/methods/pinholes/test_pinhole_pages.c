@@ -43,13 +43,10 @@ static abbe_render_desc request(abbe_transport transport, size_t pinholes) {
 }
 
 static void draw_by(const char *text, const abbe_render_desc *desc, abbe_image *out) {
-  OWNED(abbe_scene, scene);
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, out);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, desc);
+  *out = picture_of(renderer);
   assert_finite(out);
-  abbe_renderer_free(renderer);
 }
 
 static void draw(const char *text, abbe_transport transport, size_t pinholes, abbe_image *out) {
@@ -72,11 +69,9 @@ GROUP(make_context, free_context);
 /* Clear glass and whole mirrors in a room of even light are not there, however few the pinholes;
  * the floor is lit from above alone, so nothing that looks down to it may be. */
 TEST(furnace) {
-  OWNED(abbe_image, with);
-  OWNED(abbe_image, without);
   static const char text[] = DOWN SOFT WHITE_FLOOR WALL("1");
-  draw(text, ABBE_TRANSPORT_PINHOLE, 50, &with);
-  draw(text, ABBE_TRANSPORT_PHOTONS, 0, &without);
+  FILLED(abbe_image, with, draw(text, ABBE_TRANSPORT_PINHOLE, 50, &with));
+  FILLED(abbe_image, without, draw(text, ABBE_TRANSPORT_PHOTONS, 0, &without));
   for (size_t i = 0; i < SIDE * SIDE * 3; i++)
     assert_near((double)with.data[i], (double)without.data[i], 2e-5);
 }
@@ -101,9 +96,8 @@ static double worst_of(const abbe_image *picture, const double (*corner)[3], dou
 TEST(a_mirror_absorbs) {
   const double corner[4][3] = {
       {0.3, -0.25, 0}, {0.3, 0.25, 0}, {0.3, 0.25, 0.3}, {0.3, -0.25, 0.3}};
-  OWNED(abbe_image, picture);
   abbe_render_desc desc = request(ABBE_TRANSPORT_PINHOLE, 1024);
-  draw_by(DOWN SOFT WHITE_FLOOR WALL("0.25"), &desc, &picture);
+  FILLED(abbe_image, picture, draw_by(DOWN SOFT WHITE_FLOOR WALL("0.25"), &desc, &picture));
   const double worst = worst_of(&picture, corner, 0.75, 37); /* up to 2 cm before it */
   print_message("off by %.4f at most\n", worst);
   assert_true(worst < 0.02);
@@ -116,10 +110,9 @@ TEST(frames_have_other_samples) {
   static double at_place[FRAMES][SIDE][SIDE];
   double one = 0, four = 0, all = 0;
   for (int i = 0; i < FRAMES; i++) {
-    OWNED(abbe_image, picture);
     abbe_render_desc desc = request(ABBE_TRANSPORT_PINHOLE, 16);
     desc.photon_shift[0] = (i + 0.5) / FRAMES - 0.5;
-    draw_by(DOWN SOFT WHITE_FLOOR WALL("0"), &desc, &picture);
+    FILLED(abbe_image, picture, draw_by(DOWN SOFT WHITE_FLOOR WALL("0"), &desc, &picture));
     for (size_t y = 0; y < SIDE; y += STEP)
       for (size_t x = 0; x < 34; x += STEP) at_place[i][y][x] = at(&picture, x, y);
   }
@@ -147,31 +140,26 @@ TEST(pages_stay_while_a_lamp_moves) {
   static const char *const walls[] = {DOWN SOFT LAMP WHITE_FLOOR WALL("0.5"),
                                       DOWN SOFT LAMP WHITE_FLOOR ROUGH_WALL};
   for (int rough = 0; rough < 2; rough++) {
-    OWNED(abbe_scene, scene);
     OWNED(abbe_image, kept);
     OWNED(abbe_image, anew);
     const abbe_render_desc desc = request(ABBE_TRANSPORT_PINHOLE, 8);
-    load_text(walls[rough], &scene);
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
-    draw_frame(renderer);
+    OWNED(abbe_scene, scene) = scene_of(walls[rough]);
+    HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
     scene.light[0].position[1] += 0.1;
     OK(abbe_renderer_change(renderer, &scene, &desc, &error));
     const abbe_statistics s = draw_frame(renderer);
     assert_true(abbe_statistics_ran(&s, ABBE_PASS_PHOTONS));
     assert_int_equal(s.kept[ABBE_PASS_PINHOLES], !rough);
-    read_picture(renderer, false, &kept);
+    kept = picture_of(renderer);
     draw(walls[rough], ABBE_TRANSPORT_PINHOLE, 8, &anew); /* the lamp where it was */
     assert_true(memcmp(kept.data, anew.data, SIDE * SIDE * 3 * sizeof *kept.data) != 0);
     abbe_image_free(&anew);
-    abbe_renderer *other = make_renderer(&scene, &desc);
-    draw_frame(other);
-    read_picture(other, false, &anew);
+    HELD(abbe_renderer, other) = drawn_renderer(&scene, &desc);
+    anew = picture_of(other);
     assert_same_pixels(&kept, &anew);
     abbe_renderer_redraw(renderer);
     const abbe_statistics again = draw_frame(renderer);
     assert_true(abbe_statistics_ran(&again, ABBE_PASS_PINHOLES));
-    abbe_renderer_free(renderer);
-    abbe_renderer_free(other);
   }
 }
 
@@ -223,14 +211,11 @@ TEST(clusters) {
 
 /* A floor of triangles has the light of a rectangle. */
 TEST(a_floor_of_triangles) {
-  static const char disk[] =
-      "objects:\n- {name: floor, shape: lathe, around: 64, profile: [[0, 0], [2, "
-      "0]], reflectance: 1}\n";
-  OWNED(abbe_image, mesh);
+  static const char disk[] = "objects:\n- {name: floor, shape: lathe, around: 64, profile: [[0, "
+                             "0], [2, 0]], reflectance: 1}\n";
   OWNED(abbe_image, rectangle);
-  char text[2048];
-  snprintf(text, sizeof text, DOWN SOFT "%s" WALL("0.25"), disk);
-  draw(text, ABBE_TRANSPORT_PINHOLE, 200, &mesh);
+  FILLED(abbe_image, mesh,
+         draw(printed(DOWN SOFT "%s" WALL("0.25"), disk), ABBE_TRANSPORT_PINHOLE, 200, &mesh));
   draw(DOWN SOFT WHITE_FLOOR WALL("0.25"), ABBE_TRANSPORT_PINHOLE, 200, &rectangle);
   double worst = 0, most = 0;
   for (size_t y = 0; y < SIDE; y++)
@@ -245,16 +230,15 @@ TEST(a_floor_of_triangles) {
 
 /* A ball beside a black square, in even light: what each place sees of the square is missing. */
 TEST(a_ball_is_lit) {
-  static const char text[] = DOWN SOFT
-      "objects:\n- {name: globe, shape: sphere, radius: 0.3, levels: 5, reflectance: 1}\n"
-      "- {name: wall, shape: rectangle, width: 0.5, height: 0.5, mirror: 0, transform: [{rotate: "
-      "{axis: [0, 1, 0], angle: -90}}, {translate: [0.45, 0, 0.35]}]}\n";
+  static const char text[] =
+      DOWN SOFT "objects:\n- {name: globe, shape: sphere, radius: 0.3, levels: 5, reflectance: 1}\n"
+                "- {name: wall, shape: rectangle, width: 0.5, height: 0.5, mirror: 0, transform: "
+                "[{rotate: {axis: [0, 1, 0], angle: -90}}, {translate: [0.45, 0, 0.35]}]}\n";
   static const double corner[4][3] = {
       {0.45, -0.25, 0.1}, {0.45, 0.25, 0.1}, {0.45, 0.25, 0.6}, {0.45, -0.25, 0.6}};
-  OWNED(abbe_image, picture) = {0};
   abbe_render_desc desc = request(ABBE_TRANSPORT_PINHOLE, 400);
   desc.clusters = 200;
-  draw_by(text, &desc, &picture);
+  FILLED(abbe_image, picture, draw_by(text, &desc, &picture));
   double worst = 0, most = 0;
   size_t places = 0;
   for (size_t y = 0; y < SIDE; y++)
@@ -289,11 +273,10 @@ TEST(a_ball_is_lit) {
 TEST(hidden_ones) {
   static const char behind[] = "- {name: far ball, shape: sphere, radius: 0.05, levels: 4, mirror: "
                                "0, transform: [{translate: [0.45, 0, 0.06]}]}\n";
-  char text[2048];
-  OWNED(abbe_image, with);
   OWNED(abbe_image, without);
-  snprintf(text, sizeof text, "%s%s", DOWN SOFT WHITE_FLOOR WALL("1"), behind);
-  draw(text, ABBE_TRANSPORT_PINHOLE, 200, &with);
+  FILLED(abbe_image, with,
+         draw(printed("%s%s", DOWN SOFT WHITE_FLOOR WALL("1"), behind), ABBE_TRANSPORT_PINHOLE, 200,
+              &with));
   draw(DOWN SOFT WHITE_FLOOR WALL("1"), ABBE_TRANSPORT_PHOTONS, 0, &without);
   for (size_t y = 16; y < 32; y++)
     for (size_t x = 0; x < 36; x++) assert_near(at(&with, x, y), at(&without, x, y), 2e-3);
@@ -301,7 +284,7 @@ TEST(hidden_ones) {
 
 /* Refractors too: a clear ball is not there in even light, but where it shows the dark floor. */
 TEST(glass_hides_little) {
-  abbe_image glass, black, without;
+  OWNED(abbe_image, glass) = {0}, black = {0}, without = {0};
   static const char ball[] = DOWN SOFT WHITE_FLOOR BALL("flat");
   draw(ball, ABBE_TRANSPORT_PINHOLE, 300, &glass);
   draw(DOWN SOFT WHITE_FLOOR MIRROR_BALL("0"), ABBE_TRANSPORT_PINHOLE, 300, &black);
@@ -316,9 +299,6 @@ TEST(glass_hides_little) {
     }
   print_message("glass hides %.5f, black %.5f\n", of_glass / open, of_black / open);
   assert_true(of_black > 0 && of_glass < 0.5 * of_black);
-  abbe_image_free(&glass);
-  abbe_image_free(&black);
-  abbe_image_free(&without);
 }
 
 /* Beside what dispersion asks for on coloured receivers: the light is that without pinholes but for
@@ -331,23 +311,15 @@ TEST(dispersion_on_colours) {
            "0.5, 0.2]}\n" BALL("crown");
   double sum[2];
   for (int k = 0; k < 2; k++) {
-    OWNED(abbe_scene, scene);
-    OWNED(abbe_image, picture);
-    const abbe_render_desc desc = {.width = SIDE,
-                                   .height = SIDE,
-                                   .supersample = 1,
-                                   .map_size = 256,
-                                   .photons = 64,
-                                   .pinholes = k == 1 ? 60 : 0,
-                                   .transport =
-                                       k == 1 ? ABBE_TRANSPORT_PINHOLE : ABBE_TRANSPORT_PHOTONS};
-    load_text(text, &scene);
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
-    draw_frame(renderer);
-    read_picture(renderer, false, &picture);
+    const abbe_render_desc desc =
+        FIELDS(.width = SIDE, .height = SIDE, .supersample = 1, .map_size = 256, .photons = 64,
+               .pinholes = k == 1 ? 60 : 0,
+               .transport = k == 1 ? ABBE_TRANSPORT_PINHOLE : ABBE_TRANSPORT_PHOTONS);
+    OWNED(abbe_scene, scene) = scene_of(text);
+    HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+    OWNED(abbe_image, picture) = picture_of(renderer);
     assert_finite(&picture);
     sum[k] = image_sum(&picture, 1);
-    abbe_renderer_free(renderer);
   }
   print_message("%.4f of the light without\n", sum[1] / sum[0]);
   assert_near(sum[1] / sum[0], 1, 0.05);
@@ -361,10 +333,9 @@ TEST(refusals) {
       {DOWN SUN WHITE_FLOOR WALL("0.9"), "this scene has none"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    OWNED(abbe_scene, scene);
     abbe_renderer *renderer = NULL;
     const abbe_render_desc desc = {.width = 16, .height = 16, .transport = ABBE_TRANSPORT_PINHOLE};
-    load_text(cases[i].text, &scene);
+    OWNED(abbe_scene, scene) = scene_of(cases[i].text);
     REFUSED(ABBE_UNSUPPORTED, cases[i].says,
             abbe_renderer_make(context, &scene, &desc, &renderer, &error));
   }

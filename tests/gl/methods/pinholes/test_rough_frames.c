@@ -22,23 +22,15 @@
 enum { SIDE = 24 };
 
 static void draw(const char *text, size_t pinholes, abbe_image *out) {
-  OWNED(abbe_scene, scene);
-  const abbe_render_desc desc = {.width = SIDE,
-                                 .height = SIDE,
-                                 .supersample = 1,
-                                 .map_size = 256,
-                                 .photons = 64,
-                                 .wavelengths = 1,
-                                 .transport =
-                                     pinholes > 0 ? ABBE_TRANSPORT_PINHOLE : ABBE_TRANSPORT_AUTO,
-                                 .pinholes = pinholes,
-                                 .space = ABBE_RGB_SPACE_REC709};
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, out);
+  const abbe_render_desc desc =
+      FIELDS(.width = SIDE, .height = SIDE, .supersample = 1, .map_size = 256, .photons = 64,
+             .wavelengths = 1,
+             .transport = pinholes > 0 ? ABBE_TRANSPORT_PINHOLE : ABBE_TRANSPORT_AUTO,
+             .pinholes = pinholes, .space = ABBE_RGB_SPACE_REC709);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+  *out = picture_of(renderer);
   assert_finite(out);
-  abbe_renderer_free(renderer);
 }
 
 static double at(const abbe_image *p, size_t x, size_t y) {
@@ -142,9 +134,8 @@ TEST(refusals) {
   } rows[] = {{{.profile = ABBE_PROFILE_WAND2003}, "smooth ones alone"},
               {{.transport = ABBE_TRANSPORT_PHOTONS}, "by the transport 'pinhole' alone"}};
   for (size_t i = 0; i < 2; i++) {
-    OWNED(abbe_scene, scene);
     abbe_renderer *renderer = NULL;
-    load_text(text, &scene);
+    OWNED(abbe_scene, scene) = scene_of(text);
     REFUSED(ABBE_UNSUPPORTED, rows[i].says,
             abbe_renderer_make(context, &scene, &rows[i].desc, &renderer, &error));
     assert_contains(last_error.text, "'wall'");

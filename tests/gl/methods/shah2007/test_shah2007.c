@@ -14,10 +14,8 @@ static const abbe_render_desc small = {.profile = ABBE_PROFILE_SHAH2007_CIE,
                                        .space = ABBE_RGB_SPACE_XYZ};
 
 static double map_energy(const abbe_scene *scene, const abbe_render_desc *desc, abbe_image *map) {
-  abbe_renderer *renderer = make_renderer(scene, desc);
-  draw_frame(renderer);
-  read_map(renderer, 0, map);
-  abbe_renderer_free(renderer);
+  HELD(abbe_renderer, renderer) = drawn_renderer(scene, desc);
+  *map = map_of(renderer, 0);
   return image_sum(map, 1);
 }
 
@@ -25,9 +23,8 @@ GROUP(make_context, free_context);
 
 /* A pane turns no light: the map holds the lamp's power through it, less two reflections. */
 TEST(what_arrives_is_what_was_sent) {
-  OWNED(abbe_scene, scene) = {0};
   OWNED(abbe_image, map) = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR PANE("flat"));
   const double sum = map_energy(&scene, &small, &map);
   /* as of the thesis's passes, whose test says how much it is */
   const double h = 0.2995, a = 0.15, angle = 4 * asin(a * a / (a * a + h * h));
@@ -36,9 +33,8 @@ TEST(what_arrives_is_what_was_sent) {
 
 /* A low pass keeps the light, and spreads it by its variance along either axis. */
 TEST(a_low_pass_spreads_light) {
-  OWNED(abbe_scene, scene) = {0};
   double sum[2], variance[2] = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("flat"));
   for (int k = 0; k < 2; k++) {
     abbe_render_desc desc = small;
     OWNED(abbe_image, map) = {0};
@@ -62,19 +58,17 @@ TEST(a_low_pass_spreads_light) {
 
 /* Each estimator's map has the exact one's light, and nearly its place: moments of the caustic. */
 TEST(estimators_land_alike) {
-  OWNED(abbe_scene, scene) = {0};
   double exact[3] = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR PANE("flat"));
   static const abbe_estimator kinds[] = {ABBE_ESTIMATOR_EXACT,    ABBE_ESTIMATOR_RATIO,
                                          ABBE_ESTIMATOR_SHAH,     ABBE_ESTIMATOR_AXIS,
                                          ABBE_ESTIMATOR_ILLINOIS, ABBE_ESTIMATOR_IMPOSTOR};
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
     abbe_render_desc desc = small;
-    OWNED(abbe_image, map) = {0};
     double moment[3] = {0};
     desc.estimator = kinds[k];
     desc.iterations = 5;
-    map_energy(&scene, &desc, &map);
+    FILLED(abbe_image, map, map_energy(&scene, &desc, &map));
     for (size_t i = 0; i < map.width * map.height; i++) {
       const double y = (double)map.data[i * map.channels + 1];
       moment[0] += y;
@@ -96,10 +90,9 @@ TEST(estimators_land_alike) {
 /* A flat mirror sends all of its share of the lamp's light to the floor, as the default profile has
  * it. */
 TEST(a_flat_mirror_has_the_lamps_light) {
-  OWNED(abbe_scene, scene) = {0};
   OWNED(abbe_image, own) = {0};
   OWNED(abbe_image, map) = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR MIRROR, &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR MIRROR);
   abbe_render_desc desc = small;
   desc.photons =
       1024; /* the mirror is small in what the light sees, and its cells are whole ones */
@@ -112,8 +105,7 @@ TEST(a_flat_mirror_has_the_lamps_light) {
 
 /* The sun, one interface and two: both pass; through two, a second share is reflected. */
 TEST(one_interface_and_the_sun) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(CAMERA SUN FLOOR PANE("flat"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA SUN FLOOR PANE("flat"));
   double sum[2];
   for (size_t k = 0; k < 2; k++) {
     abbe_render_desc desc = small;
@@ -128,10 +120,9 @@ TEST(one_interface_and_the_sun) {
 /* A ball of air in the sun, all of whose light lands: two thirds of what its vertices are in full,
  * for (N . L) counts projection twice. */
 TEST(projection_is_counted_twice) {
-  OWNED(abbe_scene, scene) = {0};
   OWNED(abbe_image, map) = {0};
   abbe_render_desc desc = small;
-  load_text(CAMERA SUN FLOOR BALL("air"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA SUN FLOOR BALL("air"));
   desc.profile = ABBE_PROFILE_SHAH2007;
   desc.space = ABBE_RGB_SPACE_REC709;
   desc.photons = 1024;
@@ -145,28 +136,25 @@ TEST(projection_is_counted_twice) {
 TEST(as_printed) {
   OWNED(abbe_scene, scene) = {0};
   double sum[2];
-  abbe_image map = {0}, picture = {0};
+  abbe_image map = {0};
   abbe_render_desc desc = small;
   desc.profile = ABBE_PROFILE_SHAH2007;
   desc.space = ABBE_RGB_SPACE_REC709;
   for (int k = 0; k < 2; k++) {
-    load_text(k == 0 ? CAMERA POINT_LIGHT FLOOR PANE("flat")
-                     : CAMERA POINT_LIGHT FLOOR
-                  "- {name: pane, shape: box, size: [0.15, 0.15, 0.001], transform: "
-                  "[{translate: [0.05, 0.03, 0.3]}], material: flat}\n",
-              &scene);
+    scene = scene_of(k == 0 ? CAMERA POINT_LIGHT FLOOR PANE("flat")
+                            : CAMERA POINT_LIGHT FLOOR
+                         "- {name: pane, shape: box, size: [0.15, 0.15, 0.001], transform: "
+                         "[{translate: [0.05, 0.03, 0.3]}], material: flat}\n");
     sum[k] = map_energy(&scene, &desc, &map);
     abbe_image_free(&map);
     abbe_scene_free(&scene);
   }
   /* a pane of a quarter of the area has half to all of the light, by its mean cosine */
   assert_near(sum[1] / sum[0], 1.0, 0.1);
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  scene = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
   assert_int_equal(draw_frame(renderer).wavelengths, 3);
-  read_picture(renderer, false, &picture);
+  OWNED(abbe_image, picture) = picture_of(renderer);
   assert_finite(&picture);
   assert_string_equal(picture.channel[0], "R");
-  abbe_renderer_free(renderer);
-  abbe_image_free(&picture);
 }

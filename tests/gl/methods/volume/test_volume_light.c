@@ -12,12 +12,12 @@
 
 enum { MAP_TEXELS = 16 }; /* a side of a page: so few that it has one level */
 
-static const char ball[] = CAMERA SUN FLOOR
-    "- {name: orb, shape: sphere, radius: 0.1, levels: 4, material: crown, transform: [{translate: "
-    "[0, 0, 0.15]}]}\n";
-static const char wedge[] = CAMERA SUN FLOOR
-    "- {name: wedge, shape: prism, apex: 50, side: 0.2, length: 0.2, material: crown, transform: "
-    "[{translate: [0, 0, 0.2]}]}\n";
+static const char ball[] =
+    CAMERA SUN FLOOR "- {name: orb, shape: sphere, radius: 0.1, levels: 4, material: crown, "
+                     "transform: [{translate: [0, 0, 0.15]}]}\n";
+static const char wedge[] =
+    CAMERA SUN FLOOR "- {name: wedge, shape: prism, apex: 50, side: 0.2, length: 0.2, material: "
+                     "crown, transform: [{translate: [0, 0, 0.2]}]}\n";
 
 static const abbe_region_desc regions[] = {
     {.kind = ABBE_REGION_GRID, .side = 16},
@@ -28,14 +28,9 @@ static void make_volume(const abbe_scene *scene, abbe_volume_kind kind, size_t r
                         abbe_caustic_volume *out) {
   abbe_volume_fill_statistics done;
   const bool exits = kind == ABBE_VOLUME_EXITS;
-  const abbe_volume_fill_desc desc = {.object = 1,
-                                      .kind = exits ? ABBE_VOLUME_VECTOR : kind,
-                                      .exits = exits ? 400 : 0,
-                                      .nodes = nodes,
-                                      .region = regions[region],
-                                      .photons = 8192,
-                                      .passes = 1,
-                                      .threads = 2};
+  const abbe_volume_fill_desc desc =
+      FIELDS(.object = 1, .kind = exits ? ABBE_VOLUME_VECTOR : kind, .exits = exits ? 400 : 0,
+             .nodes = nodes, .region = regions[region], .photons = 8192, .passes = 1, .threads = 2);
   OK(abbe_volume_fill(scene, &desc, out, &done, &error));
 }
 
@@ -109,13 +104,10 @@ static void oracle(const abbe_scene *scene, const abbe_caustic_volume *v, abbe_v
  * anywhere at any distance. */
 static void fill_by_rays(const abbe_scene *scene, const abbe_caustic_volume *v,
                          const abbe_volume_place *place, abbe_caustic_volume *out) {
-  const abbe_exit_light_desc desc = {.light = &scene->light[0],
-                                     .object = &scene->object[1],
-                                     .place = place,
-                                     .min_nm = 380,
-                                     .max_nm = 780};
+  const abbe_exit_light_desc desc = FIELDS(.light = &scene->light[0], .object = &scene->object[1],
+                                           .place = place, .min_nm = 380, .max_nm = 780);
   const size_t count = 9 * v->region.cells;
-  float *value = malloc(count * sizeof *value);
+  FREED float *value = malloc(count * sizeof *value);
   assert_non_null(value);
   *out = (abbe_caustic_volume){.body = v->body};
   OK(abbe_volume_region_make(&v->region.desc, &out->region, &error));
@@ -123,7 +115,6 @@ static void fill_by_rays(const abbe_scene *scene, const abbe_caustic_volume *v,
   OK(abbe_caustic_volume_allocate(out, &error));
   OK(abbe_exit_light_fill(v, &desc, value, &error));
   for (size_t i = 0; i < count; i++) out->value[i] = abbe_half_of((double)value[i]);
-  free(value);
 }
 
 /* What rays bring to the floor, straight from their maps. */
@@ -143,11 +134,8 @@ static void look_at_pages(const abbe_scene *scene, const abbe_exit_pages *pages,
 
 static void make_pages(const abbe_scene *scene, const abbe_caustic_volume *v,
                        const abbe_volume_place *place, abbe_exit_pages *out) {
-  const abbe_exit_light_desc desc = {.light = &scene->light[0],
-                                     .object = &scene->object[1],
-                                     .place = place,
-                                     .min_nm = 380,
-                                     .max_nm = 780};
+  const abbe_exit_light_desc desc = FIELDS(.light = &scene->light[0], .object = &scene->object[1],
+                                           .place = place, .min_nm = 380, .max_nm = 780);
   const double(*floor)[9] = (const double(*)[9])scene->object[0].exact.parallelogram;
   OK(abbe_exit_pages_make(v, &desc, floor, 1, MAP_TEXELS, out, &error));
 }
@@ -156,25 +144,17 @@ static void make_pages(const abbe_scene *scene, const abbe_caustic_volume *v,
 static double mean_difference(const abbe_scene *scene, const abbe_caustic_volume *v,
                               abbe_volume_lookup lookup) {
   enum { SIDE = 64 };
-  abbe_image picture = {0};
   abbe_volume_place place;
   const bool printed = v->kind == ABBE_VOLUME_PRINTED;
-  const abbe_render_desc desc = {.profile = printed ? ABBE_PROFILE_WYMAN2003 : ABBE_PROFILE_DEFAULT,
-                                 .width = SIDE,
-                                 .height = SIDE,
-                                 .supersample = 1,
-                                 .adaptive = 1,
-                                 .map_size = 4 * MAP_TEXELS,
-                                 .aovs = true,
-                                 .transport = ABBE_TRANSPORT_VOLUME,
-                                 .volume = v,
-                                 .lookup = lookup};
-  abbe_caustic_volume filled = {0};
+  const abbe_render_desc desc =
+      FIELDS(.profile = printed ? ABBE_PROFILE_WYMAN2003 : ABBE_PROFILE_DEFAULT, .width = SIDE,
+             .height = SIDE, .supersample = 1, .adaptive = 1, .map_size = 4 * MAP_TEXELS,
+             .aovs = true, .transport = ABBE_TRANSPORT_VOLUME, .volume = v, .lookup = lookup);
+  OWNED(abbe_caustic_volume, filled) = {0};
   OK(abbe_volume_body_find(&v->body, &scene->object[1], &place, &error));
-  abbe_renderer *renderer = make_renderer(scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, true, &picture);
-  abbe_exit_pages pages = {0};
+  abbe_renderer *renderer = drawn_renderer(scene, &desc);
+  OWNED(abbe_image, picture) = aovs_of(renderer);
+  OWNED(abbe_exit_pages, pages) = {0};
   if (v->kind == ABBE_VOLUME_EXITS && scene->object_count == 2)
     make_pages(scene, v, &place, &pages);
   if (v->kind == ABBE_VOLUME_EXITS && pages.count == 0) {
@@ -199,9 +179,6 @@ static double mean_difference(const abbe_scene *scene, const abbe_caustic_volume
     }
   }
   assert_true(all > 0);
-  abbe_image_free(&picture);
-  abbe_exit_pages_free(&pages);
-  abbe_caustic_volume_free(&filled);
   return off / all;
 }
 
@@ -209,12 +186,10 @@ GROUP(make_context, free_context);
 
 /* Single precision finds another cell than double at its edges, once in a thousand places. */
 TEST(pixels_have_what_the_volume_holds) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(ball, &scene);
+  OWNED(abbe_scene, scene) = scene_of(ball);
   for (size_t region = 0; region < 3; region++)
     for (int kind = 0; kind < 2; kind++) {
-      OWNED(abbe_caustic_volume, v);
-      make_volume(&scene, (abbe_volume_kind)kind, region, 12, &v);
+      FILLED(abbe_caustic_volume, v, make_volume(&scene, (abbe_volume_kind)kind, region, 12, &v));
       for (int lookup = ABBE_VOLUME_LOOKUP_NEAREST; lookup < ABBE_VOLUME_LOOKUP_COUNT; lookup++)
         assert_near(mean_difference(&scene, &v, (abbe_volume_lookup)lookup), 0, 0.004);
     }
@@ -222,12 +197,10 @@ TEST(pixels_have_what_the_volume_holds) {
 
 /* The object turned and moved, the light a point elsewhere: the same volume. */
 TEST(objects_and_lights_move) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_caustic_volume, v);
   double turn[16], step[16];
   static const double axis[3] = {0.3, 1, 0.2}, offset[3] = {0.05, 0.1, 0.12};
-  load_text(wedge, &scene);
-  make_volume(&scene, ABBE_VOLUME_VECTOR, 2, 12, &v);
+  OWNED(abbe_scene, scene) = scene_of(wedge);
+  FILLED(abbe_caustic_volume, v, make_volume(&scene, ABBE_VOLUME_VECTOR, 2, 12, &v));
   abbe_transform_rotate(0.7, axis, turn);
   abbe_transform_translate(offset, step);
   abbe_transform_multiply(step, turn, turn);
@@ -243,10 +216,8 @@ TEST(objects_and_lights_move) {
 /* Rays: of the sun, a lamp that is near, a cone that meets a part of the object; of any white. */
 TEST(rays_serve_any_light) {
   static const double lamp[3] = {-0.1, -0.2, 0.7}, down[3] = {0, 0, -1};
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_caustic_volume, v);
-  load_text(wedge, &scene);
-  make_volume(&scene, ABBE_VOLUME_EXITS, 2, 12, &v);
+  OWNED(abbe_scene, scene) = scene_of(wedge);
+  FILLED(abbe_caustic_volume, v, make_volume(&scene, ABBE_VOLUME_EXITS, 2, 12, &v));
   assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_AUTO), 0, 0.004);
   abbe_light *light = &scene.light[0];
   light->illuminant = (abbe_illuminant){.kind = ABBE_ILLUMINANT_A};
@@ -260,9 +231,7 @@ TEST(rays_serve_any_light) {
   assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_AUTO), 0, 0.004);
   abbe_scene_free(&scene);
   /* where a receiver is a mesh: in cells */
-  char text[2048];
-  snprintf(text, sizeof text, "%s%s", wedge, HILL);
-  load_text(text, &scene);
+  scene = scene_of(printed("%s%s", wedge, HILL));
   assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_AUTO), 0, 0.004);
 }
 
@@ -270,15 +239,11 @@ TEST(rays_serve_any_light) {
 static double largest_step(abbe_scene *scene, const abbe_caustic_volume *v,
                            abbe_volume_lookup lookup) {
   enum { FRAMES = 24, SIDE = 32 };
-  const abbe_render_desc desc = {.width = SIDE,
-                                 .height = SIDE,
-                                 .supersample = 1,
-                                 .adaptive = 1,
-                                 .aovs = true,
-                                 .volume = v,
-                                 .lookup = lookup};
-  abbe_renderer *renderer = NULL;
-  abbe_image before = {0}, now = {0};
+  const abbe_render_desc desc = FIELDS(.width = SIDE, .height = SIDE, .supersample = 1,
+                                       .adaptive = 1, .aovs = true, .volume = v, .lookup = lookup);
+  HELD(abbe_renderer, renderer) = NULL;
+  OWNED(abbe_image, before) = {0};
+  abbe_image now = {0};
   double most = 0;
   for (int f = 0; f < FRAMES; f++) {
     const double turn = 0.5 + 0.8 * f / FRAMES;
@@ -290,7 +255,7 @@ static double largest_step(abbe_scene *scene, const abbe_caustic_volume *v,
     else
       OK(abbe_renderer_change(renderer, scene, &desc, &error));
     draw_frame(renderer);
-    read_picture(renderer, true, &now);
+    now = aovs_of(renderer);
     const size_t green = abbe_image_find_channel(&now, "caustic.G");
     double step = 0;
     for (size_t i = 0; f > 0 && i < SIDE * SIDE; i++)
@@ -301,17 +266,13 @@ static double largest_step(abbe_scene *scene, const abbe_caustic_volume *v,
     before = now;
     now = (abbe_image){0};
   }
-  abbe_image_free(&before);
-  abbe_renderer_free(renderer);
   return most;
 }
 
 /* From node to node the nearest one's caustic jumps; three nodes' fades. */
 TEST(blends_do_not_pop) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_caustic_volume, v);
-  load_text(wedge, &scene);
-  make_volume(&scene, ABBE_VOLUME_VECTOR, 2, 42, &v);
+  OWNED(abbe_scene, scene) = scene_of(wedge);
+  FILLED(abbe_caustic_volume, v, make_volume(&scene, ABBE_VOLUME_VECTOR, 2, 42, &v));
   const double jump = largest_step(&scene, &v, ABBE_VOLUME_LOOKUP_NEAREST);
   const double fade = largest_step(&scene, &v, ABBE_VOLUME_LOOKUP_BLEND);
   print_message("largest step: nearest %.3f, blend %.3f of the light\n", jump, fade);
@@ -325,14 +286,10 @@ static void refuse(const abbe_scene *scene, const abbe_render_desc *desc, abbe_r
 }
 
 TEST(what_it_does_not_hold_is_refused) {
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_scene, two) = {0};
-  OWNED(abbe_caustic_volume, v);
-  OWNED(abbe_caustic_volume, printed);
-  load_text(ball, &scene);
-  load_text(CAMERA SUN FLOOR BALL("crown") BRICK("crown"), &two);
-  make_volume(&scene, ABBE_VOLUME_VECTOR, 0, 1, &v);
-  make_volume(&scene, ABBE_VOLUME_PRINTED, 0, 1, &printed);
+  OWNED(abbe_scene, scene) = scene_of(ball);
+  OWNED(abbe_scene, two) = scene_of(CAMERA SUN FLOOR BALL("crown") BRICK("crown"));
+  FILLED(abbe_caustic_volume, v, make_volume(&scene, ABBE_VOLUME_VECTOR, 0, 1, &v));
+  FILLED(abbe_caustic_volume, printed, make_volume(&scene, ABBE_VOLUME_PRINTED, 0, 1, &printed));
   abbe_render_desc d = {.transport = ABBE_TRANSPORT_VOLUME};
   refuse(&scene, &d, ABBE_INVALID_ARGUMENT, "abbe volume");
   d = (abbe_render_desc){.transport = ABBE_TRANSPORT_PHOTONS, .volume = &v};

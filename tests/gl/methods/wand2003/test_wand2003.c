@@ -50,18 +50,14 @@ GROUP(make_context, free_context);
  * without it, less by eps / (d2 + eps). */
 TEST(one_pinhole) {
   static const char text[] = DOWN SOFT WHITE_FLOOR WALL("0.8");
-  OWNED(abbe_scene, scene) = {0};
-  OWNED(abbe_image, picture) = {0};
-  OWNED(abbe_image, base) = {0};
   abbe_render_desc desc = request(1);
-  load_text(text, &scene);
-  draw_text(text, &desc, &picture);
-  draw_text(DOWN SOFT WHITE_FLOOR WALL("0"), &desc, &base);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  FILLED(abbe_image, picture, draw_text(text, &desc, &picture));
+  FILLED(abbe_image, base, draw_text(DOWN SOFT WHITE_FLOOR WALL("0"), &desc, &base));
   assert_near(at(&base, 3, 3), 0.5 * ABBE_PI, 1e-3);
   const abbe_mesh *mesh = &scene.object[1].mesh;
-  OWNED(abbe_surface_samples, s) = {0};
   const abbe_surface_sampling sampling = {.count = 1};
-  OK(abbe_surface_samples_make(&mesh, 1, &sampling, &s, &error));
+  MADE(abbe_surface_samples, s, abbe_surface_samples_make(&mesh, 1, &sampling, &s, &error));
   const double eps = 4 * s.area / ABBE_PI;
   double most = 0;
   for (size_t y = 0; y < SIDE; y += 3)
@@ -83,9 +79,8 @@ TEST(one_pinhole) {
 TEST(a_mirror_is_a_lamp_of_its_shape) {
   const double corner[4][3] = {
       {0.3, -0.25, 0}, {0.3, 0.25, 0}, {0.3, 0.25, 0.3}, {0.3, -0.25, 0.3}};
-  OWNED(abbe_image, picture);
   const abbe_render_desc desc = request(2048);
-  draw_text(DOWN SOFT WHITE_FLOOR WALL("0.8"), &desc, &picture);
+  FILLED(abbe_image, picture, draw_text(DOWN SOFT WHITE_FLOOR WALL("0.8"), &desc, &picture));
   double worst = 0;
   for (size_t y = 0; y < SIDE; y += 3)
     for (size_t x = 0; x < 44; x += 3) { /* 10 cm away and farther */
@@ -105,18 +100,14 @@ TEST(a_ball_sends_light_to_all_sides) {
   static const char sky[] =
       "environment: {size: 256, spots: [{elevation: 50, azimuth: 30, radiance: 8, sigma: 12}, "
       "{elevation: -30, azimuth: 200, radiance: 4, sigma: 20}], uniform: 0.1}\n";
-  char text[2048], bare[2048];
-  OWNED(abbe_image, picture);
-  OWNED(abbe_image, without);
   const abbe_render_desc desc = request(2048);
-  OWNED(abbe_scene, scene);
-  snprintf(text, sizeof text, DOWN "%s" WHITE_FLOOR MIRROR_BALL, sky);
+  const char *text = printed(DOWN "%s" WHITE_FLOOR MIRROR_BALL, sky);
   /* a mirror that adds nothing */
-  snprintf(bare, sizeof bare, DOWN "%s" WHITE_FLOOR WALL("0"), sky);
-  load_text(text, &scene);
+  const char *bare = printed(DOWN "%s" WHITE_FLOOR WALL("0"), sky);
+  OWNED(abbe_scene, scene) = scene_of(text);
   const double all = 4 * ABBE_PI * scene.environment->mean[1];
-  draw_text(text, &desc, &picture);
-  draw_text(bare, &desc, &without);
+  FILLED(abbe_image, picture, draw_text(text, &desc, &picture));
+  FILLED(abbe_image, without, draw_text(bare, &desc, &without));
   for (size_t y = 4; y < SIDE; y += 8)
     for (size_t x = 2; x < 24; x += 3) {
       double p[3];
@@ -134,13 +125,11 @@ TEST(a_ball_sends_light_to_all_sides) {
   "- {name: pipe, shape: lathe, around: 256, profile: [[0.3, 0], [0.3, 0.2]], mirror: 0.9}\n"
 
 TEST(linear) {
-  OWNED(abbe_image, one);
   OWNED(abbe_image, two);
   const abbe_render_desc desc = request(200);
-  draw_text(DOWN SPOT("12", "5") WHITE_FLOOR PIPE, &desc, &one);
-  draw_text(DOWN
-            "environment: {size: 512, scale: 3, uniform: 0.2, spots: [{elevation: 55, azimuth: "
-            "160, radiance: 5, sigma: 12}]}\n" WHITE_FLOOR PIPE,
+  FILLED(abbe_image, one, draw_text(DOWN SPOT("12", "5") WHITE_FLOOR PIPE, &desc, &one));
+  draw_text(DOWN "environment: {size: 512, scale: 3, uniform: 0.2, spots: [{elevation: 55, "
+                 "azimuth: 160, radiance: 5, sigma: 12}]}\n" WHITE_FLOOR PIPE,
             &desc, &two);
   for (size_t i = 0; i < SIDE * SIDE * 3; i++)
     assert_near((double)two.data[i], 3 * (double)one.data[i], 2e-6 + 1e-5 * (double)two.data[i]);
@@ -149,9 +138,9 @@ TEST(linear) {
 /* Surroundings, mirror and eye by 90 degrees about z: the pixels of a quarter turn are as before,
  * but for how triangles and texels lie. */
 TEST(turned_together) {
-  static const char mirror[] = "- {name: mirror, shape: rectangle, width: 0.3, height: 0.2, "
-                               "mirror: 0.9, transform: [{rotate: {axis: [0, 1, 0], angle: -60}}, "
-                               "{translate: [0.3, 0.1, 0.3]}%s]}\n";
+  static const char mirror[] =
+      "- {name: mirror, shape: rectangle, width: 0.3, height: 0.2, mirror: 0.9, transform: "
+      "[{rotate: {axis: [0, 1, 0], angle: -60}}, {translate: [0.3, 0.1, 0.3]}%s]}\n";
   char text[2][2048], object[512];
   abbe_image picture[2];
   const abbe_render_desc desc = request(300);
@@ -177,7 +166,7 @@ TEST(turned_together) {
 /* Root mean square of the difference of footprints on and off, over the mean of what mirrors add.
  */
 static double footprint_matters(const char *text, const char *bare) {
-  abbe_image on, off, base;
+  OWNED(abbe_image, on) = {0}, off = {0}, base = {0};
   abbe_render_desc desc = request(400);
   draw_text(text, &desc, &on);
   draw_text(bare, &desc, &base);
@@ -188,9 +177,6 @@ static double footprint_matters(const char *text, const char *bare) {
     square += pow((double)(on.data[i] - off.data[i]), 2);
     sum += (double)(on.data[i] - base.data[i]);
   }
-  abbe_image_free(&on);
-  abbe_image_free(&off);
-  abbe_image_free(&base);
   return sqrt(square * SIDE * SIDE) / sum;
 }
 
@@ -228,14 +214,11 @@ static void send_off_pipe(double radius, double height, double e, double share, 
 TEST(a_pipe_draws_a_nephroid) {
   static const char sun[] =
       "environment: {size: 1024, sun: {elevation: 35, azimuth: 180, irradiance: 1, diameter: 6}}\n";
-  char text[2048], bare[2048];
-  OWNED(abbe_image, picture) = {0};
-  OWNED(abbe_image, base) = {0};
   abbe_render_desc desc = request(4096);
-  snprintf(text, sizeof text, DOWN "%s" WHITE_FLOOR PIPE, sun);
-  snprintf(bare, sizeof bare, DOWN "%s" WHITE_FLOOR WALL("0"), sun);
-  draw_text(text, &desc, &picture);
-  draw_text(bare, &desc, &base);
+  const char *text = printed(DOWN "%s" WHITE_FLOOR PIPE, sun);
+  const char *bare = printed(DOWN "%s" WHITE_FLOOR WALL("0"), sun);
+  FILLED(abbe_image, picture, draw_text(text, &desc, &picture));
+  FILLED(abbe_image, base, draw_text(bare, &desc, &base));
   const double radius = 0.3;
   double right[SIDE], worst = 0, most = 0, p[3];
   send_off_pipe(radius, 0.2, 35 * ABBE_PI / 180, 0.9, right);
@@ -263,10 +246,9 @@ TEST(refusals) {
       {DOWN SOFT WHITE_FLOOR WALL("0.9") BALL("flat"), "'ball' is a refractor"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    OWNED(abbe_scene, scene);
     abbe_renderer *renderer = NULL;
     const abbe_render_desc desc = request(10);
-    load_text(cases[i].text, &scene);
+    OWNED(abbe_scene, scene) = scene_of(cases[i].text);
     REFUSED(ABBE_UNSUPPORTED, cases[i].says,
             abbe_renderer_make(context, &scene, &desc, &renderer, &error));
   }

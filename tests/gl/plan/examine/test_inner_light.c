@@ -106,9 +106,8 @@ TEST(what_no_light_meets_keeps_none) {
 }
 
 TEST(diamond_keeps_more_than_crown) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_inner_light diamond, crown;
-  load_shipped("diamond", &scene);
+  OWNED(abbe_scene, scene) = shipped_scene("diamond");
   const abbe_object *stone = NULL;
   for (size_t i = 0; i < scene.object_count; i++)
     if (scene.object[i].material != NULL) stone = &scene.object[i];
@@ -142,9 +141,8 @@ static double planned(const abbe_scene *scene, const abbe_render_desc *asked, ab
 
 /* Its plan follows the gem's light until little is inside; what is asked for stays. */
 TEST(a_gem_takes_as_many_exits_as_carry_light) {
-  OWNED(abbe_scene, scene) = {0};
-  abbe_plan plan, fewer, asked;
-  load_shipped("gem", &scene);
+  OWNED(abbe_plan, plan) = {0}, fewer = {0}, asked = {0};
+  OWNED(abbe_scene, scene) = shipped_scene("gem");
   const double left = planned(&scene, NULL, &plan);
   assert_true(plan.desc.exits > ABBE_PLAN_EXITS && plan.desc.exits < ABBE_PLAN_MOST_EXITS);
   assert_true(plan.desc.energy_share < ABBE_PLAN_SHARE);
@@ -156,52 +154,38 @@ TEST(a_gem_takes_as_many_exits_as_carry_light) {
   assert_true(planned(&scene, &own, &asked) > 0.1);
   assert_int_equal(asked.desc.exits, 3);
   assert_near(asked.desc.energy_share, 0.2, 0);
-  abbe_plan_free(&plan);
-  abbe_plan_free(&fewer);
-  abbe_plan_free(&asked);
 }
 
 /* An earlier plan's light is that of the same stone and lamps, and of no others. */
 TEST(an_earlier_plan_is_taken_over) {
-  OWNED(abbe_scene, scene) = {0};
-  abbe_plan first, again, moved;
-  load_shipped("gem", &scene);
-  OK(abbe_plan_make(&scene, NULL, &first, &error));
+  OWNED(abbe_scene, scene) = shipped_scene("gem");
+  MADE(abbe_plan, first, abbe_plan_make(&scene, NULL, &first, &error));
   first.inside.exits++; /* to see who was there */
   scene.camera.eye[0] += 0.01;
-  OK(abbe_plan_make_after(&first, &scene, NULL, &again, &error));
+  MADE(abbe_plan, again, abbe_plan_make_after(&first, &scene, NULL, &again, &error));
   assert_int_equal(again.desc.exits, first.desc.exits + 1);
   assert_near(again.desc.energy_share, first.desc.energy_share, 0);
   scene.light[0].position[0] += 1e-9;
-  OK(abbe_plan_make_after(&first, &scene, NULL, &moved, &error));
+  MADE(abbe_plan, moved, abbe_plan_make_after(&first, &scene, NULL, &moved, &error));
   assert_int_equal(moved.desc.exits, first.desc.exits);
-  abbe_plan_free(&first);
-  abbe_plan_free(&again);
-  abbe_plan_free(&moved);
 }
 
 /* But while light moves it is that of where lamps stood, and of the same stone. */
 TEST(an_earlier_plan_serves_light_that_moves) {
   const abbe_render_desc coarse = {.coarse = ABBE_COARSE_ALL};
-  OWNED(abbe_scene, scene) = {0};
-  abbe_plan first, moved, rests, other;
-  load_shipped("gem", &scene);
-  OK(abbe_plan_make(&scene, &coarse, &first, &error));
+  OWNED(abbe_scene, scene) = shipped_scene("gem");
+  MADE(abbe_plan, first, abbe_plan_make(&scene, &coarse, &first, &error));
   first.inside.exits++;
   scene.light[0].position[0] += 1e-9;
-  OK(abbe_plan_make_after(&first, &scene, &coarse, &moved, &error));
+  MADE(abbe_plan, moved, abbe_plan_make_after(&first, &scene, &coarse, &moved, &error));
   assert_int_equal(moved.desc.exits, first.desc.exits + 1);
-  OK(abbe_plan_make_after(&first, &scene, NULL, &rests, &error));
+  MADE(abbe_plan, rests, abbe_plan_make_after(&first, &scene, NULL, &rests, &error));
   assert_int_equal(rests.desc.exits, first.desc.exits);
   for (size_t i = 0; i < scene.object_count; i++)
     if (scene.object[i].exact.kind == ABBE_EXACT_CONVEX)
       scene.object[i].exact.plane[0][3] *= 1 - 1e-9;
-  OK(abbe_plan_make_after(&first, &scene, &coarse, &other, &error));
+  MADE(abbe_plan, other, abbe_plan_make_after(&first, &scene, &coarse, &other, &error));
   assert_int_equal(other.desc.exits, first.desc.exits);
-  abbe_plan_free(&first);
-  abbe_plan_free(&moved);
-  abbe_plan_free(&rests);
-  abbe_plan_free(&other);
 }
 
 #define STONE                                                                                      \
@@ -216,21 +200,16 @@ TEST(the_ledger_says_the_same) {
   static const char *const lights[] = {SUN, POINT_LIGHT};
   for (int i = 0; i < 2; i++)
     for (size_t exits = 1; exits <= 5; exits += 2) {
-      char text[2048];
-      OWNED(abbe_scene, scene) = {0};
-      abbe_plan plan;
-      snprintf(text, sizeof text, CAMERA "%s" FLOOR STONE, lights[i]);
-      load_text(text, &scene);
+      OWNED(abbe_plan, plan) = {0};
+      OWNED(abbe_scene, scene) = scene_of(printed(CAMERA "%s" FLOOR STONE, lights[i]));
       abbe_render_desc desc = small_frame;
       desc.photons = 384;
       desc.map_size = 512;
       desc.exits = exits;
       desc.energy_share = 1e-6;
       const double left = planned(&scene, &desc, &plan);
-      abbe_plan_free(&plan);
-      abbe_renderer *renderer = make_renderer(&scene, &desc);
+      HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
       const abbe_ledger e = draw_frame(renderer).energy;
       assert_near(left / (e.trapped / e.reached), 1, 0.08);
-      abbe_renderer_free(renderer);
     }
 }

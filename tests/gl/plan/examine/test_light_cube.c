@@ -95,11 +95,8 @@ TEST(windows_hold_what_is_there) {
       "{translate: [0.3, -0.2, -0.2]}]",
       "shape: ring, major: 0.4, minor: 0.05, transform: [{translate: [0.3, -0.2, 0.1]}]"};
   for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
-    char text[1024];
-    OWNED(abbe_scene, scene);
-    snprintf(text, sizeof text, CAMERA POINT_LIGHT FLOOR "- {name: it, %s, material: flat}\n",
-             shapes[i]);
-    load_text(text, &scene);
+    OWNED(abbe_scene, scene) =
+        scene_of(printed(CAMERA POINT_LIGHT FLOOR "- {name: it, %s, material: flat}\n", shapes[i]));
     check_windows(&scene.object[1], scene.object[1].exact.kind == ABBE_EXACT_SPHERE);
   }
 }
@@ -139,8 +136,7 @@ TEST(the_way_to_a_box_is_the_nearest) {
   static const struct {
     double at[3], way;
   } rows[] = {{{0.2, 0, 0.4}, 0.17}, {{0.25, 0.04, 0.24}, 0.01}, {{0.28, 0.08, 0.23}, 0.05}};
-  OWNED(abbe_scene, scene);
-  load_text(CAMERA POINT_LIGHT FLOOR BRICK("flat"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BRICK("flat"));
   for (size_t i = 0; i < 3; i++)
     assert_near(abbe_object_distance(&scene.object[1], rows[i].at), rows[i].way, 1e-12);
 }
@@ -150,23 +146,19 @@ TEST(the_way_to_a_box_is_the_nearest) {
 
 /* Each lamp stands between the same four balls: four faces, and four maps a lamp. */
 TEST(maps_have_an_end) {
-  static const char balls[] =
-      FLOOR "- {name: east, shape: sphere, radius: 0.08, levels: 2, transform: [{translate: [0.4, "
-            "0, 0.2]}], material: flat}\n"
-            "- {name: west, shape: sphere, radius: 0.08, levels: 2, transform: [{translate: [-0.4, "
-            "0, 0.2]}], material: flat}\n"
-            "- {name: north, shape: sphere, radius: 0.08, levels: 2, transform: [{translate: [0, "
-            "0.4, 0.2]}], material: flat}\n"
-            "- {name: south, shape: sphere, radius: 0.08, levels: 2, transform: [{translate: [0, "
-            "-0.4, 0.2]}], material: flat}\n";
-  char text[4096];
-  OWNED(abbe_scene, scene);
+  static const char balls[] = FLOOR "- {name: east, shape: sphere, radius: 0.08, levels: 2, "
+                                    "transform: [{translate: [0.4, 0, 0.2]}], material: flat}\n"
+                                    "- {name: west, shape: sphere, radius: 0.08, levels: 2, "
+                                    "transform: [{translate: [-0.4, 0, 0.2]}], material: flat}\n"
+                                    "- {name: north, shape: sphere, radius: 0.08, levels: 2, "
+                                    "transform: [{translate: [0, 0.4, 0.2]}], material: flat}\n"
+                                    "- {name: south, shape: sphere, radius: 0.08, levels: 2, "
+                                    "transform: [{translate: [0, -0.4, 0.2]}], material: flat}\n";
   abbe_plan plan;
-  snprintf(text, sizeof text,
-           CAMERA "lights:\n" AMID("1", "0", "0") AMID("2", "0.01", "0") AMID("3", "0", "0.01")
-               AMID("4", "0.01", "0.01") "%s",
-           balls);
-  load_text(text, &scene);
+  OWNED(abbe_scene, scene) =
+      scene_of(printed(CAMERA "lights:\n" AMID("1", "0", "0") AMID("2", "0.01", "0")
+                           AMID("3", "0", "0.01") AMID("4", "0.01", "0.01") "%s",
+                       balls));
   OK(abbe_plan_make(&scene, NULL, &plan, &error));
   assert_int_equal(plan.light_view_count, 16);
   unsigned carried[4] = {0};
@@ -179,22 +171,21 @@ TEST(maps_have_an_end) {
   for (int i = 0; i < 4; i++) assert_int_equal(carried[i], ABBE_LIGHT_CUBE_ALL);
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);
-  snprintf(text, sizeof text,
-           CAMERA "lights:\n" AMID("1", "0", "0") AMID("2", "0.01", "0") AMID("3", "0", "0.01")
-               AMID("4", "0.01", "0.01") AMID("5", "0.02", "0") "%s",
-           balls);
-  load_text(text, &scene);
+  scene = scene_of(printed(CAMERA "lights:\n" AMID("1", "0", "0") AMID("2", "0.01", "0")
+                               AMID("3", "0", "0.01") AMID("4", "0.01", "0.01")
+                                   AMID("5", "0.02", "0") "%s",
+                           balls));
   REFUSED(ABBE_UNSUPPORTED, "more than 16 maps", abbe_plan_make(&scene, NULL, &plan, &error));
 }
 
 /* A seam may not cut what only its layers tell; a mesh's triangles may be cut. */
 TEST(layers_need_one_view) {
-  OWNED(abbe_scene, scene);
   OWNED(abbe_plan, plan);
   abbe_render_desc desc = {.model = ABBE_MODEL_LAYERS};
-  load_text(CAMERA "lights:\n- {name: lamp, kind: point, position: [0, 0, 0.281], intensity: "
-                   "1}\n" FLOOR BALL("flat"),
-            &scene);
+  OWNED(abbe_scene, scene) = scene_of(
+      CAMERA
+      "lights:\n- {name: lamp, kind: point, position: [0, 0, 0.281], intensity: 1}\n" FLOOR BALL(
+          "flat"));
   REFUSED(ABBE_UNSUPPORTED, "no view holds its layers",
           abbe_plan_make(&scene, &desc, &plan, &error));
   desc.model = ABBE_MODEL_BVH;

@@ -11,15 +11,12 @@ TEST(the_thesis_profile_looks_through_one_view) {
   } rows[] = {{"point", false}, {"spot, direction: [1, 0, 0], cone: 30", true}};
   static const abbe_profile profiles[] = {ABBE_PROFILE_THESIS, ABBE_PROFILE_THESIS_CIE};
   for (size_t i = 0; i < 4; i++) {
-    char text[1024];
-    OWNED(abbe_scene, scene);
     OWNED(abbe_plan, plan);
     abbe_error error = {0};
-    snprintf(text, sizeof text,
-             CAMERA "lights:\n- {name: lamp, kind: %s, position: [0.1, 0, 0.2], intensity: "
-                    "1}\n" FLOOR "%s" BALL("crown"),
-             rows[i / 2].kind, BRICK("crown"));
-    load_text(text, &scene);
+    OWNED(abbe_scene, scene) = scene_of(printed(
+        CAMERA "lights:\n- {name: lamp, kind: %s, position: [0.1, 0, 0.2], intensity: 1}\n" FLOOR
+               "%s" BALL("crown"),
+        rows[i / 2].kind, BRICK("crown")));
     const abbe_render_desc desc = {.profile = profiles[i % 2]};
     const abbe_result result = abbe_plan_make(&scene, &desc, &plan, &error);
     assert_int_equal(result, rows[i / 2].one_view ? ABBE_OK : ABBE_UNSUPPORTED);

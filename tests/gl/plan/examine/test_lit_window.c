@@ -105,17 +105,15 @@ TEST(square_on_the_axis) {
   "   transform: [{translate: [0.2, 0.1, 0.03]}]}\n"
 
 static void draw(const char *text, bool unlit, size_t samples, abbe_image *picture) {
-  OWNED(abbe_scene, scene);
   abbe_render_desc desc = small_frame;
   desc.width = 96;
   desc.supersample = samples;
   desc.aovs = true;
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  OWNED(abbe_scene, scene) = scene_of(text);
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
   assert_true((renderer->receivers.unlit != 0) == unlit);
   draw_frame(renderer);
-  read_picture(renderer, true, picture);
-  abbe_renderer_free(renderer);
+  *picture = aovs_of(renderer);
 }
 
 /* A second lamp that shines all around, too faint to show, has the picture drawn lit throughout. */
@@ -125,10 +123,8 @@ TEST(unlit_where_nothing_shines) {
       CAMERA "ambient: 0.2\n" NARROW_SPOT
              "- {name: faint, kind: point, position: [0.3, 0.3, 0.5], intensity: 1e-9}\n" ROOM;
   for (size_t samples = 1; samples <= 2; samples++) {
-    OWNED(abbe_image, parts);
-    OWNED(abbe_image, whole);
-    draw(narrow, true, samples, &parts);
-    draw(wide, false, samples, &whole);
+    FILLED(abbe_image, parts, draw(narrow, true, samples, &parts));
+    FILLED(abbe_image, whole, draw(wide, false, samples, &whole));
     for (size_t c = 0; c < parts.channels; c++) {
       const double most = image_max(&whole, c);
       assert_true(most > 0);

@@ -4,10 +4,10 @@
 #include "gl/plan/examine/spectral_needs.h"
 
 TEST(extremes_are_those_of_the_range) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_material_range range;
   double first, last;
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("murk"), &scene); /* n falls; 20 per m at 400, 0 at 500 */
+  OWNED(abbe_scene, scene) =
+      scene_of(CAMERA POINT_LIGHT FLOOR BALL("murk")); /* n falls; 20 per m at 400, 0 at 500 */
   const abbe_material *murk = scene.object[1].material;
   OK(abbe_material_range_make(murk, 400, 700, &range, &error));
   OK(abbe_material_n(murk, 400, &first, &error));
@@ -23,9 +23,8 @@ TEST(extremes_are_those_of_the_range) {
 }
 
 TEST(an_unknown_index_is_an_error) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_material_range range;
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("narrow"));
   const abbe_material *narrow = scene.object[1].material;
   OK(abbe_material_range_make(narrow, 400, 700, &range, &error));
   REFUSED(ABBE_OUT_OF_RANGE, "narrow", abbe_material_range_make(narrow, 400, 701, &range, &error));

@@ -17,8 +17,7 @@ static void check(const abbe_plan *plan, abbe_plan_item item, size_t index, cons
 }
 
 TEST(a_grey_ball_asks_for_one_wavelength) {
-  OWNED(abbe_plan, plan);
-  plan_text(SILVERED POINT_LIGHT FLOOR MIRROR_BALL("0.9"), NULL, &plan);
+  FILLED(abbe_plan, plan, plan_text(SILVERED POINT_LIGHT FLOOR MIRROR_BALL("0.9"), NULL, &plan));
   assert_int_equal(plan.refractor_count, 1);
   assert_int_equal(plan.mirror_count, 1);
   assert_true(plan.mirror[0] && plan.multi_refractor_paths && plan.caustics);
@@ -32,8 +31,7 @@ TEST(a_grey_ball_asks_for_one_wavelength) {
 }
 
 TEST(a_metal_asks_for_all) {
-  OWNED(abbe_plan, plan);
-  plan_text(SILVERED POINT_LIGHT FLOOR MIRROR_BALL("gold"), NULL, &plan);
+  FILLED(abbe_plan, plan, plan_text(SILVERED POINT_LIGHT FLOOR MIRROR_BALL("gold"), NULL, &plan));
   assert_true(plan.colouring);
   assert_false(plan.fills || plan.dispersive);
   assert_int_equal(plan.desc.wavelengths, ABBE_PLAN_WAVELENGTHS);
@@ -57,11 +55,9 @@ TEST(glass_beside_a_metal_asks_for_no_more_wavelengths) {
 /* A ball is known by its triangles to whom is inside: they have two sides. */
 TEST(a_ball_around_the_lamp_is_a_mesh) {
   OWNED(abbe_plan, plan);
-  plan_text(
-      SILVERED POINT_LIGHT FLOOR
-      "- {name: ball, shape: sphere, radius: 0.1, transform: [{translate: [0.05, 0.03, 0.6]}], "
-      "mirror: 0.9}\n",
-      NULL, &plan);
+  plan_text(SILVERED POINT_LIGHT FLOOR "- {name: ball, shape: sphere, radius: 0.1, transform: "
+                                       "[{translate: [0.05, 0.03, 0.6]}], mirror: 0.9}\n",
+            NULL, &plan);
   assert_int_equal(plan.model[0], ABBE_REFRACTOR_BVH);
 }
 

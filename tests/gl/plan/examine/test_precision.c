@@ -5,12 +5,10 @@
 #include "gl/plan/plan.h"
 
 static abbe_result check(const char *text, size_t photons, abbe_error *error) {
-  OWNED(abbe_scene, scene);
   OWNED(abbe_plan, plan);
   const abbe_render_desc desc = {.photons = photons};
-  load_text(text, &scene);
-  abbe_result result = abbe_plan_make(&scene, &desc, &plan, error);
-  return result;
+  OWNED(abbe_scene, scene) = scene_of(text);
+  return abbe_plan_make(&scene, &desc, &plan, error);
 }
 
 TEST(ordinary_scenes_are_fine) {

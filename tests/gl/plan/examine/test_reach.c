@@ -89,12 +89,8 @@ TEST(a_cone_is_never_wrongly_said_to_miss) {
   assert_true(lit > 200 && missed > 10000);
 }
 
-static const abbe_camera camera = {.eye = {0, -2, 0},
-                                   .target = {0, 0, 0},
-                                   .up = {0, 0, 1},
-                                   .fov_y_rad = 1.0,
-                                   .width = 200,
-                                   .height = 100};
+static const abbe_camera camera = FIELDS(.eye = {0, -2, 0}, .target = {0, 0, 0}, .up = {0, 0, 1},
+                                         .fov_y_rad = 1.0, .width = 200, .height = 100);
 
 /* The window at the distance 2 is tan(0.5) 2 = 1.0926 high and twice as wide, to each side; a pixel
  * is 0.0219. */
@@ -137,8 +133,8 @@ TEST(sides_and_overlaps) {
   const double floor[9] = {0, 0, 1, 2, 0, 0, 0, 2, 0};
   assert_near(abbe_reach_side(floor, (double[3]){5, 5, 4}), 3, 1e-15);
   assert_near(abbe_reach_side(floor, (double[3]){-5, 0, -1}), -2, 1e-15);
-  OWNED(abbe_scene, scene) = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat") BRICK("flat") RING("flat"), &scene);
+  OWNED(abbe_scene, scene) =
+      scene_of(CAMERA POINT_LIGHT FLOOR BALL("flat") BRICK("flat") RING("flat"));
   assert_false(abbe_reach_overlap(&scene.object[1], &scene.object[2]));
   assert_true(abbe_reach_overlap(&scene.object[1], &scene.object[3]));
 }

@@ -26,10 +26,9 @@ TEST(a_model_that_is_asked_for) {
        "'convex' cannot serve 'ball'"},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    OWNED(abbe_scene, scene) = {0};
     abbe_plan plan;
     abbe_error error = {0};
-    load_text(rows[i].text, &scene);
+    OWNED(abbe_scene, scene) = scene_of(rows[i].text);
     abbe_result result =
         abbe_plan_make(&scene, &(abbe_render_desc){.model = rows[i].model}, &plan, &error);
     assert_int_equal(result, rows[i].refusal != NULL ? ABBE_UNSUPPORTED : ABBE_OK);
@@ -44,10 +43,10 @@ TEST(a_model_that_is_asked_for) {
 }
 
 TEST(too_many_refractors_are_unsupported) {
-  OWNED(abbe_scene, scene) = {0};
   abbe_plan plan;
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
-  abbe_object *object = scene.object, *many = calloc(256, sizeof *many);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
+  abbe_object *object = scene.object;
+  FREED abbe_object *many = calloc(256, sizeof *many);
   assert_non_null(many);
   for (size_t i = 0; i < 256; i++) many[i] = object[1];
   scene.object = many;
@@ -62,7 +61,6 @@ TEST(too_many_refractors_are_unsupported) {
   REFUSED(ABBE_UNSUPPORTED, "255 refractors", abbe_plan_make(&scene, NULL, &plan, &error));
   scene.object = object;
   scene.object_count = 2;
-  free(many);
 }
 
 #define DROP(name, radius, z)                                                                      \
@@ -88,10 +86,8 @@ TEST(refractors_that_overlap_are_noted) {
   /* walked light keeps the scene's rule; two layers know one refractor at a time */
   const abbe_render_desc apart = {.profile = ABBE_PROFILE_THESIS};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    OWNED(abbe_scene, scene);
-    OWNED(abbe_plan, plan);
-    load_text(rows[i].text, &scene);
-    OK(abbe_plan_make(&scene, &apart, &plan, &error));
+    OWNED(abbe_scene, scene) = scene_of(rows[i].text);
+    MADE(abbe_plan, plan, abbe_plan_make(&scene, &apart, &plan, &error));
     if (is_noted(&plan, "overlap") != (rows[i].part != NULL) ||
         (rows[i].part != NULL && !is_noted(&plan, rows[i].part)))
       fail_msg("scene %zu: %s", i,
@@ -110,20 +106,15 @@ TEST(light_that_layers_do_not_show_is_noted) {
               {CAMERA POINT_LIGHT FLOOR BRICK("dense"), NULL, false},
               {CAMERA POINT_LIGHT FLOOR BRICK("crown"), &layers, false}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    abbe_scene scene;
-    abbe_plan plan;
-    load_text(rows[i].text, &scene);
-    OK(abbe_plan_make(&scene, rows[i].asked, &plan, &error));
+    OWNED(abbe_scene, scene) = scene_of(rows[i].text);
+    MADE(abbe_plan, plan, abbe_plan_make(&scene, rows[i].asked, &plan, &error));
     assert_int_equal(is_noted(&plan, "'brick' keeps light for many inner reflections"),
                      rows[i].noted);
-    abbe_plan_free(&plan);
-    abbe_scene_free(&scene);
   }
 }
 
 TEST(convex_meshes_are_known) {
-  OWNED(abbe_mesh, mesh) = {0};
-  OK(abbe_shape_sphere(2, 3, &mesh, &error));
+  MADE(abbe_mesh, mesh, abbe_shape_sphere(2, 3, &mesh, &error));
   assert_true(abbe_mesh_is_convex(&mesh));
   /* one corner drawn in by a tenth */
   for (int k = 0; k < 3; k++) mesh.position[0][k] *= 0.9;

@@ -63,12 +63,10 @@ TEST(what_is_seen_stays) {
   for (double side = 10; side < 2e5; side *= 100) {
     const abbe_view view = view_from(1);
     const double max[3] = {side / 2, side / 2, 0}, min[3] = {-side / 2, -side / 2, 0};
-    OWNED(abbe_mesh, square) = {0};
-    OWNED(abbe_mesh, cut) = {0};
     FREED uint32_t *face_of = NULL;
-    make_square(side, &square);
+    FILLED(abbe_mesh, square, make_square(side, &square));
     assert_true(abbe_cut_mesh_needed(&square, min, max, &view));
-    OK(abbe_cut_mesh_make(&square, &view, &cut, &face_of, &error));
+    MADE(abbe_mesh, cut, abbe_cut_mesh_make(&square, &view, &cut, &face_of, &error));
     for (size_t i = 0; i < cut.face_count; i++) {
       double least = INFINITY, most = -INFINITY;
       assert_true(face_of[i] < 2);
@@ -97,12 +95,10 @@ TEST(what_is_seen_stays) {
 /* An edge with a part on one side alone has none on the other, or ends at the window. */
 TEST(parts_share_their_corners) {
   const abbe_view view = view_from(1);
-  OWNED(abbe_mesh, square);
-  OWNED(abbe_mesh, cut);
   FREED uint32_t *face_of = NULL;
   size_t alone = 0;
-  make_square(1e5, &square);
-  OK(abbe_cut_mesh_make(&square, &view, &cut, &face_of, &error));
+  FILLED(abbe_mesh, square, make_square(1e5, &square));
+  MADE(abbe_mesh, cut, abbe_cut_mesh_make(&square, &view, &cut, &face_of, &error));
   for (size_t i = 0; i < 3 * cut.face_count; i++) {
     const double *a = cut.position[cut.face[i / 3][i % 3]];
     const double *b = cut.position[cut.face[i / 3][(i + 1) % 3]];
@@ -126,8 +122,7 @@ TEST(parts_share_their_corners) {
 
 TEST(small_things_are_not_cut) {
   const abbe_view view = view_from(1);
-  OWNED(abbe_mesh, square);
-  make_square(1, &square);
+  FILLED(abbe_mesh, square, make_square(1, &square));
   const double move[3] = {0.5, 3, 0};
   for (int i = 0; i < 4; i++)
     for (int k = 0; k < 3; k++) square.position[i][k] += move[k];

@@ -25,12 +25,11 @@ typedef struct fixture {
 
 static void make(const char *objects, size_t count, fixture *f) {
   const abbe_render_desc desc = {.wavelengths = count};
-  char text[1024];
   size_t levels;
-  snprintf(text, sizeof text,
-           "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR "%s", objects);
+  const char *text = printed(
+      "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR "%s", objects);
   *f = (fixture){0};
-  load_text(text, &f->scene);
+  f->scene = scene_of(text);
   plan_scene(&f->scene, &desc, &f->plan);
   assert_true(f->plan.band_parts);
   f->surfaces = f->plan.refractor_count;
@@ -144,12 +143,11 @@ TEST(stones_have_their_colour_at_any_length) {
   double worst = 0;
   for (size_t s = 0; s < sizeof stone / sizeof *stone; s++)
     for (size_t k = 0; k < COUNTS; k++) {
-      char object[256];
       fixture f;
-      snprintf(object, sizeof object,
+      make(printed(
                "- {name: stone, shape: sphere, radius: 0.003, centre: [0, 0, 0.2], material: %s}\n",
-               stone[s]);
-      make(object, wavelengths[k], &f);
+               stone[s]),
+           wavelengths[k], &f);
       for (size_t i = 0; i < sizeof length_m / sizeof *length_m; i++)
         hold(&f, &(passage){{length_m[i], 0}}, stone[s], &worst);
       done(&f);

@@ -22,7 +22,7 @@ static void make(const char *text, fixture *f) {
   assert_int_equal(levels, 4);
   memset(f->band, 0, sizeof f->band);
   memset(f->texel, 0, sizeof f->texel);
-  load_text(text, &f->scene);
+  f->scene = scene_of(text);
   plan_scene(&f->scene, &desc, &f->plan);
   OK(abbe_spectral_tables_make(&f->scene, &f->plan, &f->tables, &error));
   OK(abbe_camera_bands_fill(&f->scene, &f->plan, &f->tables, f->band[0][0], f->texel, &error));

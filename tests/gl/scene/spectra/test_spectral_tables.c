@@ -14,7 +14,7 @@ typedef struct fixture {
 
 static void make(const char *text, fixture *f) {
   const abbe_render_desc desc = {.wavelengths = NODES, .min_nm = 400, .max_nm = 700};
-  load_text(text, &f->scene);
+  f->scene = scene_of(text);
   plan_scene(&f->scene, &desc, &f->plan);
   assert_true(f->plan.caustics);
   OK(abbe_spectral_tables_make(&f->scene, &f->plan, &f->tables, &error));
@@ -132,16 +132,14 @@ TEST(lines_are_nodes_and_nothing_lies_between) {
     size_t lines;
   } lamps[] = {{"mercury", 6}, {"sodium", 2}, {"632.8nm", 1}};
   for (size_t i = 0; i < sizeof lamps / sizeof *lamps; i++) {
-    char text[1000];
     double line[ABBE_ILLUMINANT_MOST_LINES];
-    snprintf(text, sizeof text,
-             CAMERA
-             "lights:\n- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: 1,"
-             " illuminant: %s}\n" FLOOR BALL("crown"),
-             lamps[i].illuminant);
+    const char *text = printed(
+        CAMERA "lights:\n- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: "
+               "1, illuminant: %s}\n" FLOOR BALL("crown"),
+        lamps[i].illuminant);
     fixture f;
     const abbe_render_desc desc = {0};
-    load_text(text, &f.scene);
+    f.scene = scene_of(text);
     plan_scene(&f.scene, &desc, &f.plan);
     assert_int_equal(f.plan.lines, lamps[i].lines);
     OK(abbe_spectral_tables_make(&f.scene, &f.plan, &f.tables, &error));
@@ -165,26 +163,23 @@ TEST(lines_are_nodes_and_nothing_lies_between) {
 
 /* What is asked for, and light of other kinds, keep the even spacing. */
 TEST(wavelengths_are_even_where_not_all_light_is_of_lines) {
-  abbe_scene scene;
   double line[ABBE_PLAN_MOST_LINES];
-  load_text(CAMERA "lights:\n- {name: lamp, kind: point, position: [0, 0, 1], intensity: 1, "
-                   "illuminant: hydrogen}\n- {name: laser, kind: point, position: [0, 1, 1], "
-                   "intensity: 1, illuminant: 632.8nm}\n" FLOOR BALL("crown"),
-            &scene);
+  OWNED(abbe_scene, scene) =
+      scene_of(CAMERA "lights:\n- {name: lamp, kind: point, position: [0, 0, 1], intensity: 1, "
+                      "illuminant: hydrogen}\n- {name: laser, kind: point, position: [0, 1, 1], "
+                      "intensity: 1, illuminant: 632.8nm}\n" FLOOR BALL("crown"));
   assert_int_equal(abbe_spectral_needs_lines(&scene, 380, 780, line), 6);
   assert_near(line[3], 632.8, 0);
   assert_int_equal(abbe_spectral_needs_lines(&scene, 480, 640, line), 2);
-  abbe_plan plan;
   const abbe_render_desc asked = {.wavelengths = 7};
-  plan_scene(&scene, &asked, &plan);
+  FILLED(abbe_plan, plan, plan_scene(&scene, &asked, &plan));
   assert_int_equal(plan.lines, 0);
   assert_int_equal(plan.desc.wavelengths, 7);
-  abbe_plan_free(&plan);
   abbe_scene_free(&scene);
-  load_text(CAMERA "lights:\n- {name: lamp, kind: point, position: [0, 0, 1], intensity: 1, "
-                   "illuminant: hydrogen}\n- {name: day, kind: point, position: [0, 1, 1], "
-                   "intensity: 1}\n" FLOOR BALL("crown"),
-            &scene);
+  scene = scene_of(
+      CAMERA
+      "lights:\n- {name: lamp, kind: point, position: [0, 0, 1], intensity: 1, illuminant: "
+      "hydrogen}\n- {name: day, kind: point, position: [0, 1, 1], intensity: 1}\n" FLOOR BALL(
+          "crown"));
   assert_int_equal(abbe_spectral_needs_lines(&scene, 380, 780, line), 0);
-  abbe_scene_free(&scene);
 }

@@ -12,17 +12,15 @@ typedef abbe_result test_reader(abbe_mesh_reading *r, const char *data, size_t s
 /* From a copy, so that a sanitizer sees what is read past its end. */
 static inline abbe_result test_read(test_reader *read, const char *path, const char *material,
                                     const void *data, size_t size, abbe_mesh *out) {
-  abbe_mesh_reading r = {.path = path, .material = material};
-  char *whole = malloc(size + 1);
+  OWNED(abbe_mesh_reading, r) = {.path = path, .material = material};
+  FREED char *whole = malloc(size + 1);
   assert_non_null(whole);
   memcpy(whole, data, size);
   whole[size] = '\0';
   memset(out, 0, sizeof *out);
   last_error.text[0] = '\0';
   abbe_result result = read(&r, whole, size, &last_error);
-  free(whole);
   if (result == ABBE_OK) result = abbe_mesh_reading_finish(&r, out, &last_error);
-  abbe_mesh_reading_free(&r);
   return result;
 }
 

@@ -63,15 +63,13 @@ static size_t make(const wish *w, char *out) {
 #define OR(text) (text ? text : "")
   const int length = snprintf(
       json, sizeof json,
-      "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
-      "\"nodes\":[{\"mesh\":0%s}],\"meshes\":[{\"primitives\":[{\"indices\":0,\"attributes\":"
-      "{\"POSITION\":1%s}%s}]%s}],\"accessors\":[{\"bufferView\":0,\"componentType\":5123,"
-      "\"count\":"
-      "12,\"type\":\"SCALAR\"},{\"bufferView\":1,\"componentType\":%d,\"count\":4,\"type\":\"VEC3\""
-      ",\"normalized\":%s}%s],\"bufferViews\":[{\"buffer\":0,\"byteLength\":24},{\"buffer\":0,"
+      "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{"
+      "\"mesh\":0%s}],\"meshes\":[{\"primitives\":[{\"indices\":0,\"attributes\":{\"POSITION\":1%s}"
+      "%s}]%s}],\"accessors\":[{\"bufferView\":0,\"componentType\":5123,\"count\":12,\"type\":"
+      "\"SCALAR\"},{\"bufferView\":1,\"componentType\":%d,\"count\":4,\"type\":\"VEC3\","
+      "\"normalized\":%s}%s],\"bufferViews\":[{\"buffer\":0,\"byteLength\":24},{\"buffer\":0,"
       "\"byteOffset\":24,\"byteLength\":%d,\"byteStride\":%d}%s],\"buffers\":[{\"byteLength\":%zu%"
-      "s%s"
-      "%s}]%s}",
+      "s%s%s}]%s}",
       OR(w->node), OR(w->attributes), OR(w->primitive), OR(w->mesh), type,
       w->normalised ? "true" : "false", OR(w->more), 4 * step, step, OR(w->more_views), used,
       w->binary ? ""
@@ -130,10 +128,9 @@ static void assert_reads(const wish *w, double size, double shift, double tolera
 /* The tetrahedron is 1 wide, 2 high along glTF's y and 3 deep. */
 TEST(meshes_stand) {
   static char data[8192];
-  OWNED(abbe_mesh, m);
   abbe_mesh_report r;
   const size_t size = make(&(wish){.type = FLOAT}, data);
-  OK(test_read(abbe_gltf_read, "t.gltf", NULL, data, size, &m));
+  MADE(abbe_mesh, m, test_read(abbe_gltf_read, "t.gltf", NULL, data, size, &m));
   OK(abbe_mesh_check(&m, &r, &error));
   assert_near(r.volume, 1, 1e-12); /* not mirrored */
   static const double min[] = {0, -3, 0}, max[] = {1, 0, 2};
@@ -151,30 +148,16 @@ TEST(numbers_are_read_of_every_kind) {
       {.type = UNSIGNED_SHORT, .unit = 1e-3, .step = 8, .node = ",\"scale\":[0.001,0.001,0.001]"},
       {.type = SHORT, .unit = 1e-3, .step = 8, .node = ",\"scale\":[0.001,0.001,0.001]"},
       {.type = BYTE, .unit = 0.025, .step = 4, .node = ",\"scale\":[0.025,0.025,0.025]"},
-      {.type = UNSIGNED_BYTE,
-       .unit = 0.0125,
-       .step = 4,
-       .node = ",\"scale\":[0.0125,0.0125,0.0125]"},
-      {.type = BYTE,
-       .normalised = true,
-       .unit = 3 / 126.0,
-       .step = 4,
-       .node = ",\"scale\":[3.0238095238095237,3.0238095238095237,3.0238095238095237]"},
-      {.type = UNSIGNED_BYTE,
-       .normalised = true,
-       .unit = 3 / 255.0,
-       .step = 4,
-       .node = ",\"scale\":[3,3,3]"},
-      {.type = SHORT,
-       .normalised = true,
-       .unit = 3 / 32766.0,
-       .step = 8,
-       .node = ",\"scale\":[3.00009155831,3.00009155831,3.00009155831]"},
-      {.type = UNSIGNED_SHORT,
-       .normalised = true,
-       .unit = 3 / 65535.0,
-       .step = 8,
-       .node = ",\"scale\":[3,3,3]"},
+      FIELDS(.type = UNSIGNED_BYTE, .unit = 0.0125, .step = 4,
+             .node = ",\"scale\":[0.0125,0.0125,0.0125]"),
+      FIELDS(.type = BYTE, .normalised = true, .unit = 3 / 126.0, .step = 4,
+             .node = ",\"scale\":[3.0238095238095237,3.0238095238095237,3.0238095238095237]"),
+      FIELDS(.type = UNSIGNED_BYTE, .normalised = true, .unit = 3 / 255.0, .step = 4,
+             .node = ",\"scale\":[3,3,3]"),
+      FIELDS(.type = SHORT, .normalised = true, .unit = 3 / 32766.0, .step = 8,
+             .node = ",\"scale\":[3.00009155831,3.00009155831,3.00009155831]"),
+      FIELDS(.type = UNSIGNED_SHORT, .normalised = true, .unit = 3 / 65535.0, .step = 8,
+             .node = ",\"scale\":[3,3,3]"),
   };
   for (size_t i = 0; i < sizeof wishes / sizeof *wishes; i++) assert_reads(&wishes[i], 1, 0, 1e-6);
 }
@@ -187,9 +170,8 @@ TEST(nodes_place_meshes) {
   for (int i = 0; i < 2; i++) assert_reads(&placed[i], 2, 5, 1e-12);
   assert_reads(&placed[2], 1, 0, 0);
   /* a mirror turns faces, so that they look outwards again */
-  OWNED(abbe_mesh, m);
   abbe_mesh_report r;
-  OK(read_wish(&(wish){.node = ",\"scale\":[-1,1,1]"}, &m));
+  MADE(abbe_mesh, m, read_wish(&(wish){.node = ",\"scale\":[-1,1,1]"}, &m));
   OK(abbe_mesh_check(&m, &r, &error));
   assert_near(r.volume, 1, 1e-12);
   assert_near(r.min[0], -1, 0);
@@ -211,20 +193,18 @@ TEST(instances_are_read) {
   memcpy(bytes, place, 24);
   memcpy(bytes + 24, size, 24);
   memcpy(bytes + 48, turn, 8);
-  const wish w = {
-      .node = ",\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":2,"
-              "\"SCALE\":3,\"ROTATION\":4}}}",
-      .more =
-          "," VEC(3, 5126, 2) "2}," VEC(3, 5126, 2) "3}," VEC(4, 5120, 2) "4,\"normalized\":true}",
-      .more_views = ",{\"buffer\":0,\"byteOffset\":72,\"byteLength\":24},{\"buffer\":0,"
-                    "\"byteOffset\":96,\"byteLength\":24},{\"buffer\":0,\"byteOffset\":120,"
-                    "\"byteLength\":8}",
-      .root = ",\"extensionsRequired\":[\"EXT_mesh_gpu_instancing\"]",
-      .bytes = bytes,
-      .size = sizeof bytes};
-  OWNED(abbe_mesh, m);
+  const wish w =
+      FIELDS(.node = ",\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{"
+                     "\"TRANSLATION\":2,\"SCALE\":3,\"ROTATION\":4}}}",
+             .more = "," VEC(3, 5126, 2) "2}," VEC(3, 5126, 2) "3}," VEC(
+                 4, 5120, 2) "4,\"normalized\":true}",
+             .more_views =
+                 ",{\"buffer\":0,\"byteOffset\":72,\"byteLength\":24},{\"buffer\":0,\"byteOffset\":"
+                 "96,\"byteLength\":24},{\"buffer\":0,\"byteOffset\":120,\"byteLength\":8}",
+             .root = ",\"extensionsRequired\":[\"EXT_mesh_gpu_instancing\"]", .bytes = bytes,
+             .size = sizeof bytes);
   abbe_mesh_report r;
-  OK(read_wish(&w, &m));
+  MADE(abbe_mesh, m, read_wish(&w, &m));
   assert_int_equal(m.face_count, 8);
   OK(abbe_mesh_check(&m, &r, &error));
   assert_near(r.volume, 1 + 8, 1e-9);
@@ -238,16 +218,13 @@ TEST(sparse_numbers_are_read) {
   unsigned char bytes[16] = {3};
   const float away[3] = {0, 0, 6};
   memcpy(bytes + 4, away, sizeof away);
-  const wish w = {
-      .more = ",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":2,\"componentType\":5121"
-              "},\"values\":{\"bufferView\":3}}",
-      .more_views = ",{\"buffer\":0,\"byteOffset\":72,\"byteLength\":1},{\"buffer\":0,"
-                    "\"byteOffset\":76,\"byteLength\":12}",
-      .bytes = bytes,
-      .size = sizeof bytes};
+  const wish w = FIELDS(.more = ",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":2,"
+                                "\"componentType\":5121},\"values\":{\"bufferView\":3}}",
+                        .more_views = ",{\"buffer\":0,\"byteOffset\":72,\"byteLength\":1},{"
+                                      "\"buffer\":0,\"byteOffset\":76,\"byteLength\":12}",
+                        .bytes = bytes, .size = sizeof bytes);
   /* it belongs to the accessor of positions, whose object is closed before */
   static char data[8192];
-  OWNED(abbe_mesh, m);
   abbe_mesh_report r;
   size_t size = make(&w, data);
   data[size] = '\0';
@@ -255,7 +232,7 @@ TEST(sparse_numbers_are_read) {
   assert_true(sparse != NULL && end != NULL);
   memmove(sparse, sparse + 1, (size_t)(end - sparse) - 1);
   end[-1] = '}';
-  OK(read_turned("t.gltf", data, size, &m));
+  MADE(abbe_mesh, m, read_turned("t.gltf", data, size, &m));
   OK(abbe_mesh_check(&m, &r, &error));
   assert_near(r.volume, 2, 1e-12);
 }
@@ -291,20 +268,17 @@ TEST(strips_and_fans_are_read) {
     snprintf(more, sizeof more,
              ",{\"bufferView\":2,\"componentType\":5123,\"count\":%d,\"type\":\"SCALAR\"}",
              mode == 5 ? 6 : 5);
-    const wish w = {.primitive = primitive,
-                    .more = more,
-                    .more_views = ",{\"buffer\":0,\"byteOffset\":72,\"byteLength\":12}",
-                    .bytes = mode == 5 ? (const void *)strip : fan,
-                    .size = sizeof strip};
+    const wish w = FIELDS(.primitive = primitive, .more = more,
+                          .more_views = ",{\"buffer\":0,\"byteOffset\":72,\"byteLength\":12}",
+                          .bytes = mode == 5 ? (const void *)strip : fan, .size = sizeof strip);
     static char data[8192];
-    OWNED(abbe_mesh, m);
     abbe_mesh_report r;
     size_t size = make(&w, data);
     data[size] = '\0';
     char *first = strstr(data, "\"indices\":0,"); /* one key of the name alone */
     assert_non_null(first);
     memset(first, ' ', 12);
-    OK(read_turned("t.gltf", data, size, &m));
+    MADE(abbe_mesh, m, read_turned("t.gltf", data, size, &m));
     OK(abbe_mesh_check(&m, &r, &error));
     assert_int_equal(r.flipped_edges + r.crowded_edges, 0);
     assert_int_equal(m.face_count, mode == 5 ? 4 : 3);
@@ -323,13 +297,10 @@ TEST(names_of_buffers_are_decoded) {
   assert_non_null(file);
   assert_int_equal(fwrite(data, 1, size, file), size);
   fclose(file);
-  abbe_mesh m;
-  char *others = NULL;
-  OK(abbe_mesh_load("t_names.gltf", ABBE_NORMALS_FLAT, &m, &others, &error));
+  FREED char *others = NULL;
+  MADE(abbe_mesh, m, abbe_mesh_load("t_names.gltf", ABBE_NORMALS_FLAT, &m, &others, &error));
   assert_string_equal(others, "t gltf%1.bin");
   assert_string_equal(others + strlen(others) + 1, "");
-  free(others);
-  abbe_mesh_free(&m);
   unlink("t_names.gltf");
   unlink("t gltf%1.bin");
 }
@@ -365,8 +336,7 @@ TEST(what_is_not_read_is_named) {
        "all are as many",
        ABBE_SCHEMA},
       {{.attributes = ",\"NORMAL\":2",
-        .more = ",{\"componentType\":5126,\"count\":1398102,\"type\":"
-                "\"VEC3\"}"},
+        .more = ",{\"componentType\":5126,\"count\":1398102,\"type\":\"VEC3\"}"},
        "1398102 elements and no 'bufferView'",
        ABBE_UNSUPPORTED},
       {{.primitive = ",\"mode\":1"}, "no faces were read from it", ABBE_GEOMETRY},

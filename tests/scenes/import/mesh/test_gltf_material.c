@@ -8,9 +8,9 @@
 #define FILE_NAME "/tmp/abbe-test-material.gltf"
 
 static abbe_result load(const char *json, const char *part, abbe_material *out, char **name,
-                        abbe_error *error) {
-  assert_int_equal(abbe_file_write(FILE_NAME, json, strlen(json), NULL), ABBE_OK);
-  const abbe_result result = abbe_gltf_material_load(FILE_NAME, part, out, name, error);
+                        abbe_error *why) {
+  OK(abbe_file_write(FILE_NAME, json, strlen(json), &error));
+  const abbe_result result = abbe_gltf_material_load(FILE_NAME, part, out, name, why);
   unlink(FILE_NAME);
   return result;
 }
@@ -29,13 +29,12 @@ GROUP(make_folder, drop_folder);
 TEST(abbe_numbers_of_the_extension) {
   static const double rows[][2] = {{2.04, 9.8}, {0.625, 32}, {0.36, 55}, {0.33, 59}};
   for (size_t i = 0; i < 4; i++) {
-    char json[1000], *name;
-    OWNED(abbe_material, m);
+    char *name;
     abbe_material_numbers numbers;
-    snprintf(json, sizeof json,
-             "{\"materials\":[%s,\"KHR_materials_dispersion\":{\"dispersion\":%g}}}]}",
-             GLASS("stone", "1.76", ""), rows[i][0]);
-    OK(load(json, NULL, &m, &name, &error));
+    MADE(abbe_material, m,
+         load(printed("{\"materials\":[%s,\"KHR_materials_dispersion\":{\"dispersion\":%g}}}]}",
+                      GLASS("stone", "1.76", ""), rows[i][0]),
+              NULL, &m, &name, &error));
     abbe_material_numbers_make(&m, &numbers);
     assert_near(numbers.n_d, 1.76, 1e-9);
     assert_near(numbers.v_d, 20 / rows[i][0], 1e-9);
@@ -47,14 +46,14 @@ TEST(abbe_numbers_of_the_extension) {
 }
 
 TEST(defaults_and_what_is_left_out) {
-  OWNED(abbe_material, m);
   FREED char *name = NULL;
   double n;
-  OK(load("{\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.85,0.85,0.85,1]},"
-          "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":0.9},\"KHR_"
-          "materials_volume\":{\"thicknessFactor\":1,\"attenuationDistance\":0.02,"
-          "\"attenuationColor\":[0.5,0.25,0]}}},{\"name\":\"cloth\"}]}",
-          NULL, &m, &name, &error));
+  MADE(abbe_material, m,
+       load("{\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.85,0.85,0.85,1]},"
+            "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":0.9},\"KHR_"
+            "materials_volume\":{\"thicknessFactor\":1,\"attenuationDistance\":0.02,"
+            "\"attenuationColor\":[0.5,0.25,0]}}},{\"name\":\"cloth\"}]}",
+            NULL, &m, &name, &error));
   OK(abbe_material_n(&m, 444, &n, &error));
   assert_near(n, 1.5, 0);
   assert_string_equal(m.name, "from-file");
@@ -95,8 +94,8 @@ TEST(bad_files_are_refused) {
        "three numbers"},
       {ONE("1.5", ",\"attenuationDistance\":1,\"attenuationColor\":[1,2,1]"), NULL, ABBE_SCHEMA,
        "three numbers"},
-      {"{\"materials\":[{\"name\":\"film\",\"extensions\":{\"KHR_materials_transmission\":"
-       "{\"transmissionFactor\":1}}}]}",
+      {"{\"materials\":[{\"name\":\"film\",\"extensions\":{\"KHR_materials_transmission\":{"
+       "\"transmissionFactor\":1}}}]}",
        NULL, ABBE_UNSUPPORTED, "thin wall"},
       {"{\"materials\":[" GLASS("x", "1.5",
                                 "") ",\"KHR_materials_dispersion\":{\"dispersion\":-2}}}]}",
@@ -137,13 +136,13 @@ TEST(broken_binaries_are_refused) {
 
 /* A ball of glass on a floor, as glTF: the ball alone comes back, of the same index and colour. */
 TEST(what_is_exported_is_read_again) {
-  abbe_scene scene, again;
-  char path[200], text[1000];
+  abbe_scene again;
+  char text[1000];
   abbe_error why = {0};
   double a, b;
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("murk"), &scene);
+  abbe_scene scene = scene_of(CAMERA POINT_LIGHT FLOOR BALL("murk"));
   done(written(&scene, ABBE_SCENE_EXPORT_GLTF));
-  snprintf(path, sizeof path, "%s/again.yaml", folder);
+  const char *path = printed("%s/again.yaml", folder);
   snprintf(text, sizeof text, "%s",
            "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR
            "- {name: ball, mesh: it.glb, material: from-file}\n");

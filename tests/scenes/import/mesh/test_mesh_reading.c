@@ -67,11 +67,11 @@ static double length_around(const test_polygon *p) {
 static void check(const test_polygon *p, const double frame[9], int digits, double tolerance) {
   static text t;
   for (int obj = 0; obj < 2; obj++) {
-    OWNED(abbe_mesh, m);
     abbe_mesh_report r;
     char *what = NULL;
     write_prism(p, frame, digits, obj, &t);
-    OK(test_read(obj ? abbe_obj_read : abbe_ply_read, "t", NULL, t.data, t.size, &m));
+    MADE(abbe_mesh, m,
+         test_read(obj ? abbe_obj_read : abbe_ply_read, "t", NULL, t.data, t.size, &m));
     assert_int_equal(m.face_count, 4 * p->count - 4);
     OK(abbe_mesh_check(&m, &r, &error));
     assert_int_equal(r.open_edges + r.crowded_edges + r.flipped_edges + r.degenerate_faces, 0);
@@ -119,7 +119,6 @@ TEST(faces_have_holes) {
     static text t;
     size_t corner[TEST_POLYGON_MOST];
     test_polygon p;
-    OWNED(abbe_mesh, m);
     abbe_mesh_report r;
     test_holes(holes, &p);
     t.size = 0;
@@ -128,7 +127,7 @@ TEST(faces_have_holes) {
       corner[i] = i;
     }
     add_polygon(&t, true, corner, p.count);
-    OK(test_read(abbe_obj_read, "t", NULL, t.data, t.size, &m));
+    MADE(abbe_mesh, m, test_read(abbe_obj_read, "t", NULL, t.data, t.size, &m));
     OK(abbe_mesh_check(&m, &r, &error));
     assert_near(r.area, 100 - holes, 1e-9);
     assert_int_equal(r.degenerate_faces + r.crowded_edges + r.flipped_edges, 0);

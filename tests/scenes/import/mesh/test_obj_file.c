@@ -44,8 +44,7 @@ TEST(marks_of_encodings_are_heeded) {
 TEST(corners_have_their_own_uv_and_normals) {
   static const char text[] = POINTS "vt 0.25 0.75\nvt 1 0 0\nvn 0 0 1\nvn 0 0 -2\n"
                                     "f 1/1/1 2/2/2 3/-1/-2\nf 4//1 2/1/2 1/2/1\n";
-  OWNED(abbe_mesh, m);
-  OK(test_read(abbe_obj_read, "t.obj", NULL, text, strlen(text), &m));
+  MADE(abbe_mesh, m, test_read(abbe_obj_read, "t.obj", NULL, text, strlen(text), &m));
   assert_true(m.given_normals);
   assert_int_equal(m.face_count, 2);
   static const double uv[6][2] = {{0.25, 0.75}, {1, 0}, {1, 0}, {0, 0}, {0.25, 0.75}, {1, 0}};
@@ -89,14 +88,11 @@ TEST(files_of_materials_are_known) {
   assert_non_null(file);
   assert_int_equal(fwrite(text, 1, sizeof text - 1, file), sizeof text - 1);
   fclose(file);
-  abbe_mesh m;
-  char *others = NULL;
-  OK(abbe_mesh_load("t_names.obj", ABBE_NORMALS_FLAT, &m, &others, &error));
+  FREED char *others = NULL;
+  MADE(abbe_mesh, m, abbe_mesh_load("t_names.obj", ABBE_NORMALS_FLAT, &m, &others, &error));
   const char *at = others;
   for (size_t i = 0; i < sizeof names / sizeof *names; at += strlen(at) + 1, i++)
     assert_string_equal(at, names[i]);
-  free(others);
-  abbe_mesh_free(&m);
   unlink("t_names.obj");
 }
 

@@ -100,10 +100,8 @@ TEST(strips_alternate_and_begin_anew) {
                                        "6 0 1 2 2 3 4\n"};
   static const size_t count[] = {3, 2, 2};
   for (int i = 0; i < 3; i++) {
-    OWNED(abbe_mesh, m);
-    char text[512];
-    snprintf(text, sizeof text, PLAIN "%s", strips[i]);
-    OK(parse(text, strlen(text), &m));
+    const char *text = printed(PLAIN "%s", strips[i]);
+    MADE(abbe_mesh, m, parse(text, strlen(text), &m));
     assert_int_equal(m.face_count, count[i]);
     for (size_t f = 0; f < (i < 2 ? m.face_count : 1); f++) {
       double n[3];
@@ -136,9 +134,9 @@ TEST(texts_of_faces_are_read) {
       "property list uchar int vertex_index\nelement vertex 4\nproperty double z\n"
       "property double x\nproperty double y\nend_header\n1 3 0 2 1\n1 3 0 1 3\n1 3 0 3 2\n"
       "1 3 1 2 3\n0 0 0\n0 1 0\n0 0 2\n3 0 0\n",
-      "ply\rformat ascii 1.0\relement vertex 4\rproperty float x\rproperty float y\r"
-      "property float z\relement face 4\rproperty list uchar int vertex_index\rend_header\r"
-      "0 0 0\r1 0 0\r0 2 0\r0 0 3\r3 0 2 1\r3 0 1 3\r3 0 3 2\r3 1 2 3\r",
+      "ply\rformat ascii 1.0\relement vertex 4\rproperty float x\rproperty float y\rproperty float "
+      "z\relement face 4\rproperty list uchar int vertex_index\rend_header\r0 0 0\r1 0 0\r0 2 0\r0 "
+      "0 3\r3 0 2 1\r3 0 1 3\r3 0 3 2\r3 1 2 3\r",
       "ply \n\t comment a\n\n \t\n format\tascii  1.0 \t\n element \tvertex\t4\n"
       "\tproperty\tfloat x\n property  float\ty \nproperty float \t z\nelement face 4\n"
       " property   list uchar \t int vertex_indices \n\tend_header\t \n" BODY,
@@ -164,7 +162,6 @@ TEST(a_body_may_begin_with_the_end_of_a_line) {
                                       "end_header"};
   for (int e = 0; e < 3; e++)
     for (unsigned char first = '\n'; first <= '\r'; first++) {
-      OWNED(abbe_mesh, m) = {0};
       char data[512] = "";
       const unsigned char body[] = {first, 0, 0, 1, 0, 0, 0, 1, 0, 3, 0, 1, 2};
       for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
@@ -174,7 +171,7 @@ TEST(a_body_may_begin_with_the_end_of_a_line) {
       const size_t head = strlen(data);
       /* after a lone return, a line feed is the body's own */
       memcpy(data + head, body, sizeof body);
-      OK(parse(data, head + sizeof body, &m));
+      MADE(abbe_mesh, m, parse(data, head + sizeof body, &m));
       assert_near(m.position[0][0], first, 0);
     }
 }
@@ -189,9 +186,8 @@ TEST(vertices_and_corners_have_uv_and_normals) {
   static const char corners[] =
       FACES("property list uchar float texcoord\n") "3 0 1 2 6 0.5 0.25 1 0 0 1\n";
   for (int i = 0; i < 2; i++) {
-    OWNED(abbe_mesh, m);
     const char *text = i == 0 ? vertices : corners;
-    OK(parse(text, strlen(text), &m));
+    MADE(abbe_mesh, m, parse(text, strlen(text), &m));
     assert_true(m.given_normals == (i == 0));
     if (i == 0) assert_near(m.normal[m.face[0][2]][2], 3, 0);
     assert_near(m.uv[m.face[0][0]][0], 0.5, 0);
@@ -214,8 +210,7 @@ TEST(texture_coordinates_stay_with_their_face) {
       VERTICES("4") "property list uchar int vertex_indices\nproperty list uchar float texcoord\n"
                     "end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
                     "4 1 2 3 0 8 0 0 1 0 1 1 0 1\n3 1 2 3 0\n";
-  OWNED(abbe_mesh, m);
-  OK(parse(before, strlen(before), &m));
+  MADE(abbe_mesh, m, parse(before, strlen(before), &m));
   assert_int_equal(m.face_count, 1);
   assert_near(m.uv[m.face[0][0]][0], 0.5, 0);
   assert_near(m.uv[m.face[0][1]][0], 1, 0);

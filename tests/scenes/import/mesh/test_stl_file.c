@@ -55,11 +55,10 @@ TEST(texts_are_read) {
 }
 
 TEST(several_solids_are_one_mesh) {
-  char one[4096], text[8192];
-  OWNED(abbe_mesh, m);
+  char one[4096];
   write_text(false, "", "\n", "endsolid own\n", one);
-  snprintf(text, sizeof text, "%s%s", one, one);
-  OK(test_read(abbe_stl_read, "t.stl", NULL, text, strlen(text), &m));
+  const char *text = printed("%s%s", one, one);
+  MADE(abbe_mesh, m, test_read(abbe_stl_read, "t.stl", NULL, text, strlen(text), &m));
   assert_int_equal(m.face_count, 8);
 }
 
@@ -80,11 +79,10 @@ TEST(another_count_is_said) {
   abbe_mesh m;
   unsigned char data[84 + 4 * 50];
   for (size_t i = 0; i < 4; i++) {
-    char words[80];
     const size_t size = write_binary("own", counts[i], data);
     assert_int_equal(test_read(abbe_stl_read, "t.stl", NULL, data, size, &m), ABBE_PARSE);
-    snprintf(words, sizeof words, "t.stl: as a binary STL it announces %u triangles", counts[i]);
-    assert_contains(last_error.text, words);
+    assert_contains(last_error.text,
+                    printed("t.stl: as a binary STL it announces %u triangles", counts[i]));
     assert_contains(last_error.text, "which are 4 triangles and 0 bytes");
   }
   const size_t size = write_binary("own", 4, data);

@@ -159,10 +159,9 @@ TEST(the_rainbows_of_descartes) {
   assert_near(degrees(incidence), 71.83, 5e-3);
   /* the primary bow's red edge stands at 42.4, its violet at 40.6 degrees from the antisolar point
    */
-  abbe_material_table table = {0};
   const abbe_material *water = NULL;
   double n = 0;
-  OK(abbe_material_table_load(NULL, &table, &error));
+  MADE(abbe_material_table, table, abbe_material_table_load(NULL, &table, &error));
   OK(abbe_material_table_find(&table, "water", &water, &error));
   OK(abbe_material_n(water, 700, &n, &error));
   assert_true(abbe_closed_form_rainbow(n, 1, &deviation, &incidence));
@@ -170,7 +169,6 @@ TEST(the_rainbows_of_descartes) {
   OK(abbe_material_n(water, 400, &n, &error));
   assert_true(abbe_closed_form_rainbow(n, 1, &deviation, &incidence));
   assert_near(180 - degrees(deviation), 40.6, 0.1);
-  abbe_material_table_free(&table);
   assert_false(abbe_closed_form_rainbow(2, 1, &deviation, &incidence));
   assert_false(abbe_closed_form_rainbow(1, 1, &deviation, &incidence));
   assert_false(abbe_closed_form_rainbow(NAN, 1, &deviation, &incidence));
