@@ -119,8 +119,9 @@ abbe_result abbe_gem_report_sheet(const char *path, const abbe_gem_report_facts 
   snprintf(text, sizeof text, "%s, %g mm wide; level, seen from above",
            abbe_file_name(f->input->in.path), 1000 * f->input->width_m);
   abbe_sheet_text(s, MARGIN, MARGIN + 26, 8, false, false, 0.35, text);
-  snprintf(text, sizeof text, "head's shadow of half angle %g degrees; D65, %zu wavelengths%s",
+  snprintf(text, sizeof text, "head's shadow of half angle %g degrees; D65, %zu wavelength%s%s",
            f->head_deg, f->judgement->view.wavelengths,
+           f->judgement->view.wavelengths == 1 ? "" : "s",
            f->judgement->is_crystal ? "; both waves of the crystal" : "");
   abbe_sheet_text(s, MARGIN, MARGIN + 36, 8, false, false, 0.35, text);
   if (result == ABBE_OK) result = put_maps(s, f, MARGIN + 46, error);

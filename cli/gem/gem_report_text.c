@@ -45,8 +45,9 @@ void abbe_gem_report_print(const abbe_gem_report_facts *f) {
   const size_t count = abbe_gem_judgement_rows(j, row);
   printf("%s: %s, in %s, %g mm wide\n", f->input->in.path, abbe_gem_input_title(&f->input->in),
          f->input->in.material->name, 1000 * f->input->width_m);
-  printf("%.0f rays of the eye from above, each at %zu wavelengths; head's half angle %g degrees\n",
-         rays(&j->view), j->view.wavelengths, f->head_deg);
+  printf(
+      "%.0f rays of the eye from above, each at %zu wavelength%s; head's half angle %g degrees\n",
+      rays(&j->view), j->view.wavelengths, j->view.wavelengths == 1 ? "" : "s", f->head_deg);
   print_crystal(f);
   if (j->has_tilts)
     printf("tilted about %d axes up to %g degrees by %g\n", ABBE_GEM_AXES,

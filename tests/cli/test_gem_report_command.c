@@ -48,6 +48,7 @@ TEST(numbers_add_up) {
       run_line(GEM "report" DIAMOND SMALL
                    "--step 15 --wavelengths 1 --csv -o one.pdf > one.csv && grep -q ^iso one.csv"),
       0);
+  run_says(GEM "report" DIAMOND SMALL "--tilt 0 --wavelengths 1", "each at 1 wavelength;");
   run_must("! grep -q ^fire one.csv && rm one.csv one.pdf");
   /* Without a head all that comes from above is returned; a wider one takes more. */
   double before = 1;
