@@ -59,11 +59,9 @@ TEST(what_no_fact_asks_for_changes_nothing) {
 /* What receivers show to rays through stones is what the camera has seen, where it has: nearly as
  * all. */
 TEST(what_the_camera_has_seen_serves_rays) {
-  OWNED(abbe_scene, scene) = {0};
-  load_text(CAMERA POINT_LIGHT ASIDE FLOOR BRICK(
-                "crown") "environment: {uniform: 0.1, softboxes: "
-                         "[{elevation: 60, azimuth: 90, width: 60, height: 30, radiance: 2}]}\n",
-            &scene);
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT ASIDE FLOOR BRICK(
+      "crown") "environment: {uniform: 0.1, softboxes: [{elevation: 60, azimuth: 90, width: 60, "
+               "height: 30, radiance: 2}]}\n");
   const double found = with_everything(&scene, 8);
   print_message("%g apart\n", found);
   assert_true(found < 5e-3);
