@@ -27,6 +27,8 @@ static const struct argp_option others[] = {
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
     {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 1},
     {"observer", OPTION_OBSERVER, "NAME", 0, ABBE_OBSERVER_HELP, 1},
+    {"volume", OPTION_VOLUME, "FILE.exr", ABBE_ARGUMENT_READS,
+     "the caustic volume that caustics are looked up in", 1},
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
      "a table instead of the scene's: default, thesis or a file", 1},
     ABBE_SCENE_INPUT_OPTIONS(1),
@@ -34,8 +36,6 @@ static const struct argp_option others[] = {
     ABBE_SCENE_INPUT_ALPHA_OPTION(1),
 };
 static const struct argp_option others_aside[] = {
-    {"volume", OPTION_VOLUME, "FILE.exr", ABBE_ARGUMENT_READS,
-     "the caustic volume that caustics are looked up in", 1},
     {"unfilled", OPTION_UNFILLED, NULL, 0, "of thesis, the map before its fill", 1},
     {"polygons", OPTION_POLYGONS, "LIST", 0,
      "of wyman2006's quads and triangles: even beams, light by corners, those between surfaces "
