@@ -97,7 +97,7 @@ TEST(a_receiver_larger_than_the_view_is_in_view) {
   scene.camera.target[2] = 2;
   REFUSED(ABBE_UNSUPPORTED, "view", abbe_scene_check(&scene, &error));
   scene.light_count = 0;
-  REFUSED(ABBE_SCHEMA, "", abbe_scene_check(&scene, &error));
+  REFUSED(ABBE_SCHEMA, "give it at least one under", abbe_scene_check(&scene, &error));
   abbe_mesh_free(&floor.mesh);
 }
 

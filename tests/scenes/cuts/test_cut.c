@@ -61,18 +61,19 @@ TEST(names_go_on_within_a_tier) {
 
 TEST(what_no_stone_has_is_refused) {
   OWNED(abbe_cut, cut) = {.gear = 96};
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_cut_add_facet(&cut, 1, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "a facet needs a tier before it",
+          abbe_cut_add_facet(&cut, 1, &error));
   REFUSED(ABBE_SCHEMA, "at least 4", abbe_cut_check(&cut, &error));
   OK(abbe_cut_add_tier(&cut, 45, 2, &error));
   for (size_t i = 0; i < ABBE_CUT_MAX_FACETS; i++) OK(abbe_cut_add_facet(&cut, 1, &error));
-  REFUSED(ABBE_UNSUPPORTED, "", abbe_cut_add_facet(&cut, 1, &error));
+  REFUSED(ABBE_UNSUPPORTED, "no stone has so many", abbe_cut_add_facet(&cut, 1, &error));
   abbe_cut_place(&cut);
   OK(abbe_cut_check(&cut, &error));
   cut.facet[7].n[0] = NAN;
   REFUSED(ABBE_SCHEMA, "facet 8 faces no direction", abbe_cut_check(&cut, &error));
   abbe_cut_place(&cut);
   cut.facet[8].d = INFINITY;
-  REFUSED(ABBE_SCHEMA, "", abbe_cut_check(&cut, &error));
+  REFUSED(ABBE_SCHEMA, "lies inf from the centre", abbe_cut_check(&cut, &error));
   cut.facet[8].d = 1;
   cut.gear = 0;
   REFUSED(ABBE_SCHEMA, "teeth", abbe_cut_check(&cut, &error));

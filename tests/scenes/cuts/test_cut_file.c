@@ -21,9 +21,12 @@ TEST(others_are_refused) {
   abbe_cut cut;
   REFUSED(ABBE_UNSUPPORTED, "'stone.stl' is no design",
           abbe_cut_file_read("stone.stl", &cut, NULL, &error));
-  REFUSED(ABBE_UNSUPPORTED, "", abbe_cut_file_read("a.asc/stone", &cut, NULL, &error));
-  REFUSED(ABBE_IO, "", abbe_cut_file_read("/nowhere/stone.gcs", &cut, NULL, &error));
-  REFUSED(ABBE_IO, "", abbe_cut_file_read("/dev/zero.gem", &cut, NULL, &error));
+  REFUSED(ABBE_UNSUPPORTED, "is no design that is known by its name",
+          abbe_cut_file_read("a.asc/stone", &cut, NULL, &error));
+  REFUSED(ABBE_IO, "No such file or directory",
+          abbe_cut_file_read("/nowhere/stone.gcs", &cut, NULL, &error));
+  REFUSED(ABBE_IO, "No such file or directory",
+          abbe_cut_file_read("/dev/zero.gem", &cut, NULL, &error));
 }
 
 /* Planes that close no stone, however well they are written. */

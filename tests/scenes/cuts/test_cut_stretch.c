@@ -136,8 +136,10 @@ TEST(what_is_refused) {
           abbe_cut_stretch_apply(&cut, &p, 0.9, 0.8, &error));
   assert_near(cut.tier[0].angle_deg, 54.73561, 0);
   OK(abbe_cut_stretch_apply(&cut, &p, 0.9, 0.9, &error));
-  REFUSED(ABBE_OUT_OF_RANGE, "", abbe_cut_stretch_apply(&cut, &p, 0, 1, &error));
-  REFUSED(ABBE_OUT_OF_RANGE, "", abbe_cut_stretch_apply(&cut, &p, 1, NAN, &error));
+  REFUSED(ABBE_OUT_OF_RANGE, "times what they were, and not",
+          abbe_cut_stretch_apply(&cut, &p, 0, 1, &error));
+  REFUSED(ABBE_OUT_OF_RANGE, "times what they were, and not",
+          abbe_cut_stretch_apply(&cut, &p, 1, NAN, &error));
   abbe_cut_polyhedron_free(&p);
   abbe_cut_free(&cut);
   /* the centre is far above this girdle: a shallow pavilion would pass it */

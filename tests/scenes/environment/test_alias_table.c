@@ -49,8 +49,10 @@ TEST(what_is_refused) {
                                   {INFINITY, 1}, {1e308, 1e308}, {0, 1e-320}};
   abbe_alias_table table;
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-    REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_alias_table_make(bad[i], 2, &table, &error));
+    REFUSED(ABBE_INVALID_ARGUMENT, "weights want to be finite, at least",
+            abbe_alias_table_make(bad[i], 2, &table, &error));
     assert_null(table.keep);
   }
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_alias_table_make(bad[0], 0, &table, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "weights want to be finite, at least",
+          abbe_alias_table_make(bad[0], 0, &table, &error));
 }

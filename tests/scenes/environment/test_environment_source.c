@@ -157,5 +157,6 @@ TEST(what_is_refused) {
   };
   MADE(abbe_radiance_map, map, abbe_radiance_map_make(16, &map, &error));
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-    REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_environment_source_add(&bad[i], &map, &error));
+    REFUSED(ABBE_INVALID_ARGUMENT, "a source of the surroundings has a size or a",
+            abbe_environment_source_add(&bad[i], &map, &error));
 }

@@ -119,7 +119,8 @@ TEST(wrong_sides) {
   for (size_t i = 0; i < 4; i++)
     REFUSED(ABBE_INVALID_ARGUMENT, "a power of two",
             abbe_radiance_cube_make(&map, wrong[i], &cube, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_radiance_cube_make(&map, 16, &cube, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "a cube of a map without texels",
+          abbe_radiance_cube_make(&map, 16, &cube, &error));
   abbe_radiance_cube_free(&cube);
   abbe_radiance_cube_free(NULL);
 }

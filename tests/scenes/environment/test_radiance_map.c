@@ -155,8 +155,10 @@ TEST(what_is_refused) {
   OWNED(abbe_radiance_map, map) = {0};
   abbe_radiance_map half;
   for (size_t w = 0; w < sizeof widths / sizeof *widths; w++)
-    REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_radiance_map_make(widths[w], &map, &error));
+    REFUSED(ABBE_INVALID_ARGUMENT, "texels across is not possible",
+            abbe_radiance_map_make(widths[w], &map, &error));
   map = make(6);
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_radiance_map_halve(&map, &half, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "texels is too small to be halved",
+          abbe_radiance_map_halve(&map, &half, &error));
   abbe_radiance_map_free(NULL);
 }

@@ -206,13 +206,16 @@ TEST(what_cannot_be_is_refused) {
   static const char never[] = "/tmp/abbe-test-never.pov";
   REFUSED(ABBE_INVALID_ARGUMENT, "2 to 100", abbe_pov_file_write(never, &scene, &options, &error));
   options.samples = 101;
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_pov_file_write(never, &scene, &options, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "samples of the spectrum, not",
+          abbe_pov_file_write(never, &scene, &options, &error));
   options.samples = 2;
   options.photons = ABBE_POV_MAX_PHOTONS + 1;
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_pov_file_write(never, &scene, &options, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "photons are more than POV-Ray can hold",
+          abbe_pov_file_write(never, &scene, &options, &error));
   /* known from 400 to 700 nm only */
   REFUSED(ABBE_OUT_OF_RANGE, "narrow", abbe_pov_file_write(never, &scene, NULL, &error));
-  REFUSED(ABBE_IO, "", abbe_pov_file_write("/no/such/folder/x.pov", &scene, NULL, &error));
+  REFUSED(ABBE_IO, "cannot be written, for its folder is not",
+          abbe_pov_file_write("/no/such/folder/x.pov", &scene, NULL, &error));
   abbe_scene_free(&scene);
   scene = scene_of(CAMERA FLOOR BALL("flat") "environment: {size: 64, uniform: 1}\n");
   REFUSED(ABBE_UNSUPPORTED, "'environment'", abbe_pov_file_write(never, &scene, NULL, &error));

@@ -49,7 +49,7 @@ TEST(subdivision_keeps_a_mesh_closed_and_smooth) {
   assert_int_equal(m.face_count, 12 * 64);
   assert_int_equal(test_mesh_faults(&m).open_edges, 0);
   assert_true(test_mesh_faults(&m).volume > 0.2 && test_mesh_faults(&m).volume < 0.9);
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_mesh_subdivide(&m, 60, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "levels of subdivision of", abbe_mesh_subdivide(&m, 60, &error));
   abbe_mesh_free(&m);
   OK(abbe_shape_rectangle(1, 1, &m, &error));
   OK(abbe_mesh_subdivide(&m, 2, &error));
@@ -196,7 +196,8 @@ TEST(bad_files_are_refused) {
     unlink(files[i].path);
   }
   abbe_mesh m;
-  REFUSED(ABBE_IO, "", abbe_mesh_load("no_such_file.obj", ABBE_NORMALS_AUTO, &m, NULL, &error));
+  REFUSED(ABBE_IO, "No such file or directory",
+          abbe_mesh_load("no_such_file.obj", ABBE_NORMALS_AUTO, &m, NULL, &error));
 }
 
 static abbe_mesh load(const char *path, const char *text, abbe_mesh_normals normals) {

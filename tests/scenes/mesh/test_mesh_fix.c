@@ -56,7 +56,8 @@ TEST(corners_that_lie_a_little_apart_are_joined) {
   }
   /* farther apart than that they are another mesh's business */
   OWNED(abbe_mesh, m) = torn_sphere(1e-2);
-  REFUSED(ABBE_GEOMETRY, "", abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, NULL, &error));
+  REFUSED(ABBE_GEOMETRY, "so it has no inside to refract in",
+          abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, NULL, &error));
 }
 
 TEST(an_inverted_mesh_is_turned) {
@@ -92,7 +93,8 @@ TEST(a_large_bent_hole_is_refused_and_counted) {
   m.face_count -= 200;
   char *what = NULL;
   const abbe_mesh_report r = test_mesh_faults(&m);
-  REFUSED(ABBE_GEOMETRY, "", abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error));
+  REFUSED(ABBE_GEOMETRY, "the mesh is not a closed, consistently",
+          abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error));
   assert_null(what);
   assert_contains(last_error.text,
                   printed("%zu open edges make %zu hole%s, the widest of %zu edges, %.3g across",
@@ -138,7 +140,8 @@ TEST(repair_closes_what_bends) {
   }
   m.face_count = kept;
   FREED char *what = NULL;
-  REFUSED(ABBE_GEOMETRY, "", abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, NULL, &error));
+  REFUSED(ABBE_GEOMETRY, "the mesh is not a closed, consistently",
+          abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, NULL, &error));
   OK(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, true, NULL, &what, &error));
   assert_contains(what, "1 hole closed, 1.98 across in the mesh's own unit");
   const abbe_mesh_report r = test_mesh_faults(&m);

@@ -44,9 +44,11 @@ TEST(bad_indices_and_positions_are_refused) {
   REFUSED(ABBE_INVALID_ARGUMENT, "vertex 4 of 4", abbe_topology_make(&m, &t, &error));
   m.face[1][2] = 3;
   m.position[2][1] = NAN;
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_topology_make(&m, &t, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "of the mesh has the coordinate nan, which is",
+          abbe_topology_make(&m, &t, &error));
   m.position[2][1] = 1e300;
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_topology_make(&m, &t, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "which is not a length in metres that can be",
+          abbe_topology_make(&m, &t, &error));
 }
 
 static size_t count_touching(const abbe_topology *t) {

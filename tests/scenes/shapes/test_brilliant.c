@@ -70,7 +70,7 @@ TEST(refuses_what_is_no_stone) {
                                 {.diameter = 1, .star = 0.05}};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
     abbe_mesh m;
-    REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_brilliant_make(&bad[i], &m, &error));
+    REFUSED(ABBE_INVALID_ARGUMENT, "a brilliant", abbe_brilliant_make(&bad[i], &m, &error));
     assert_null(m.position);
     assert_true(strlen(last_error.text) > 20);
   }

@@ -234,9 +234,12 @@ TEST(what_is_no_stone_is_not_flattened) {
   double moved;
   MADE(abbe_mesh, m, abbe_shape_ring(1, 0.3, 48, 24, &m, &error));
   const double(*before)[3] = (const double(*)[3])m.position;
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_convex_flatten(&m, 0, 256, &moved, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_convex_flatten(&m, 0.021, 256, &moved, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_convex_flatten(&m, NAN, 256, &moved, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "a mesh cannot be flattened by",
+          abbe_convex_flatten(&m, 0, 256, &moved, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "a mesh cannot be flattened by",
+          abbe_convex_flatten(&m, 0.021, 256, &moved, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "a mesh cannot be flattened by nan of its",
+          abbe_convex_flatten(&m, NAN, 256, &moved, &error));
   REFUSED(ABBE_GEOMETRY, "more planes than can be followed",
           abbe_convex_flatten(&m, 0.001, 256, &moved, &error));
   REFUSED(ABBE_GEOMETRY, "is no convex solid yet: (",

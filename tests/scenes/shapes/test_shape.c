@@ -137,22 +137,38 @@ TEST(impossible_parameters_are_refused) {
   const double flat[3] = {1, 0, 1}, cut[3][2] = {{0, 0}, {-1, 0}, {0, 1}};
   const double line[2][2] = {{0, 0}, {0, 1}}, pinched[3][2] = {{1, 0}, {0, 1}, {1, 2}},
                twice[4][2] = {{0, 0}, {1, 0}, {1, 0}, {0, 1}};
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_sphere(0, 2, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_sphere(NAN, 2, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_sphere(1, 10, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_ring(1, 1, 8, 8, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_ring(1, 0.5, 2, 8, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_ring(1, INFINITY, 8, 8, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_gem(2, 1, 0.5, 1, 1, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_gem(6, 1, 1.5, 1, 1, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_gem(6, 1, 0.5, 1, -1, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_prism(ABBE_PI, 1, 1, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_prism(1, 1, 0, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_box(flat, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_rectangle(1, -1, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_lathe(cut, 3, 8, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_lathe(line, 2, 8, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_lathe(pinched, 3, 8, &m, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_lathe(twice, 4, 8, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "it must be a finite length above zero",
+          abbe_shape_sphere(0, 2, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "a sphere with radius nan is not possible",
+          abbe_shape_sphere(NAN, 2, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "levels is not possible", abbe_shape_sphere(1, 10, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "the minor radius must be the smaller",
+          abbe_shape_ring(1, 1, 8, 8, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "segments is not possible",
+          abbe_shape_ring(1, 0.5, 2, 8, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "a ring with minor radius inf is not possible",
+          abbe_shape_ring(1, INFINITY, 8, 8, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "sides is not possible",
+          abbe_shape_gem(2, 1, 0.5, 1, 1, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "must be smaller than its girdle",
+          abbe_shape_gem(6, 1, 1.5, 1, 1, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "it must be a finite length above zero",
+          abbe_shape_gem(6, 1, 0.5, 1, -1, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "a prism with an apex of",
+          abbe_shape_prism(ABBE_PI, 1, 1, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "it must be a finite length above zero",
+          abbe_shape_prism(1, 1, 0, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "it must be a finite length above zero",
+          abbe_shape_box(flat, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "it must be a finite length above zero",
+          abbe_shape_rectangle(1, -1, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "and only the ends may lie on the axis",
+          abbe_shape_lathe(cut, 3, 8, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "both points of the lathe profile lie on the",
+          abbe_shape_lathe(line, 2, 8, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "and only the ends may lie on the axis",
+          abbe_shape_lathe(pinched, 3, 8, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "of the lathe profile are the same",
+          abbe_shape_lathe(twice, 4, 8, &m, &error));
   assert_null(m.face);
 }

@@ -96,10 +96,14 @@ TEST(what_is_refused) {
   abbe_map_layout parallel = layout_of(true, 0, 0, 0.4);
   REFUSED(ABBE_INVALID_ARGUMENT, "",
           abbe_map_resample(&from, "a", &parallel, 8, 8, 2, &to, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_map_resample(&from, "a", &own, 8, 8, 0, &to, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_map_resample(&from, "a", &own, 8, 8, 65, &to, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_map_resample(&from, "a", &own, 0, 8, 2, &to, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "a texel cannot be cut into",
+          abbe_map_resample(&from, "a", &own, 8, 8, 0, &to, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "a texel cannot be cut into",
+          abbe_map_resample(&from, "a", &own, 8, 8, 65, &to, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "pixels cannot be made",
+          abbe_map_resample(&from, "a", &own, 0, 8, 2, &to, &error));
   MADE(abbe_image, bare, abbe_image_make(8, 8, 1, names, &bare, &error));
-  REFUSED(ABBE_NOT_FOUND, "", abbe_map_resample(&bare, "a", &own, 8, 8, 2, &to, &error));
+  REFUSED(ABBE_NOT_FOUND, "view, so it is no receiver map",
+          abbe_map_resample(&bare, "a", &own, 8, 8, 2, &to, &error));
   assert_null(to.data);
 }

@@ -143,7 +143,7 @@ TEST(other_pictures_are_no_volumes) {
   OK(abbe_exr_write(path, &image, &error));
   REFUSED(ABBE_NOT_FOUND, "abbe volume", abbe_volume_file_read(path, &v, &error));
   unlink(path);
-  REFUSED(ABBE_IO, "", abbe_volume_file_read(path, &v, &error));
+  REFUSED(ABBE_IO, "No such file or directory", abbe_volume_file_read(path, &v, &error));
 }
 
 /* Values that a volume cannot have. */

@@ -191,7 +191,8 @@ TEST(limits_are_told) {
   d = (abbe_region_desc){.kind = ABBE_REGION_GEODESIC, .shells = 2, .inner = 2, .outer = 1};
   REFUSED(ABBE_INVALID_ARGUMENT, "no space", abbe_volume_region_make(&d, &r, &error));
   d.outer = NAN;
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_volume_region_make(&d, &r, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "to nan m holds no space",
+          abbe_volume_region_make(&d, &r, &error));
   d = (abbe_region_desc){.kind = ABBE_REGION_GEODESIC, .inner = 1, .outer = 2};
   REFUSED(ABBE_INVALID_ARGUMENT, "shells", abbe_volume_region_make(&d, &r, &error));
 }

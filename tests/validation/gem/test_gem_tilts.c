@@ -159,7 +159,8 @@ TEST(work_can_be_given_up_and_wrong_requests_are_refused) {
   desc.user = &done;
   desc.threads = 1;
   abbe_gem_tilts t;
-  REFUSED(ABBE_CANCELLED, "", abbe_gem_tilts_make(&j.stone, &j.weights, &desc, &t, &error));
+  REFUSED(ABBE_CANCELLED, "s tilts were given up",
+          abbe_gem_tilts_make(&j.stone, &j.weights, &desc, &t, &error));
   assert_near(done, 1.0 / 20, 1e-12);
   static const abbe_gem_tilts_desc wrong[] = {
       {.most_rad = 2}, {.most_rad = -1}, {.steps = 91}, {.repeats = 1}, {.head_rad = 0.8}};

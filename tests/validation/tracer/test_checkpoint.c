@@ -104,7 +104,7 @@ TEST(a_refusal_changes_nothing) {
   HELD(abbe_tracer, tracer) = make_tracer(&scene, &other);
   HELD(abbe_tracer, same) = make_tracer(&scene, &other);
   run_passes(tracer, 1);
-  REFUSED(ABBE_INVALID_ARGUMENT, "", load(tracer, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "ask for the same, or start anew without", load(tracer, &error));
   run_passes(tracer, 1);
   run_passes(same, 2);
   check_same(tracer, same);
