@@ -2,7 +2,7 @@
 
 #include "base/nearest.h"
 #include "cli/base/command.h"
-#include "validation/compare/file_comparison.h"
+#include "validation/measure/file_comparison.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>

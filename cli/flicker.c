@@ -4,7 +4,7 @@
 
 #include "base/number.h"
 #include "colorimetry/image/exr.h"
-#include "validation/frames/frame_flicker.h"
+#include "validation/measure/frame_flicker.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>

@@ -1,7 +1,7 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 
-#include "validation/compare/outline.h"
+#include "validation/measure/outline.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>

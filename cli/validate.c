@@ -2,7 +2,7 @@
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
 
-#include "validation/known/known_answers.h"
+#include "validation/lab/known/known_answers.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>

@@ -7,7 +7,7 @@
 #include "base/maths.h"
 #include "base/nearest.h"
 #include "scenes/volume/caustic_volume.h"
-#include "validation/volume/volume_fill.h"
+#include "validation/lab/volume_fill.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>

@@ -5,7 +5,7 @@ if(OpenEXR_VERSION VERSION_GREATER_EQUAL 3.3) # whose own initialisers miss a me
 endif()
 find_package(PNG REQUIRED)
 find_package(OpenMP REQUIRED COMPONENTS C)
-# Embree 3.13 or 4: validation/transport/embree.h
+# Embree 3.13 or 4: validation/trace/transport/embree.h
 find_package(embree REQUIRED CONFIG)
 if(embree_VERSION VERSION_LESS 3.13)
   message(FATAL_ERROR "Abbe needs Embree 3.13 or later; ${embree_VERSION} is installed")

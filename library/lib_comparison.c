@@ -2,8 +2,8 @@
 
 #include "library/lib_handles.h"
 #include "library/lib_settings.h"
-#include "validation/compare/compare.h"
-#include "validation/compare/file_comparison.h"
+#include "validation/measure/compare.h"
+#include "validation/measure/file_comparison.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -7,8 +7,8 @@
 #include "scenes/cuts/cut_file.h"
 #include "scenes/cuts/cut_polyhedron.h"
 #include "spectral/formats/material_table_load.h"
-#include "validation/gem/gem_judgement.h"
-#include "validation/gem/gem_maps.h"
+#include "validation/measure/gem/gem_judgement.h"
+#include "validation/measure/gem/gem_maps.h"
 
 #include <limits.h>
 #include <stdlib.h>

@@ -2,9 +2,9 @@
 #include "library/choice/matched_physics.h"
 #include "library/lib_handles.h"
 #include "library/lib_settings.h"
-#include "validation/denoise/denoise.h"
-#include "validation/tracer/checkpoint.h"
-#include "validation/tracer/trace_run.h"
+#include "validation/trace/denoise.h"
+#include "validation/trace/tracer/checkpoint.h"
+#include "validation/trace/tracer/trace_run.h"
 
 #include <stdint.h>
 #include <unistd.h>

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "cli/base/command.h"
-#include "validation/tracer/ranked_run.h"
+#include "validation/trace/tracer/ranked_run.h"
 
 #include <stdbool.h>
 

@@ -14,8 +14,8 @@
 #include "scenes/cuts/cut.h"
 #include "scenes/cuts/cut_polyhedron.h"
 #include "spectral/materials/material.h"
-#include "validation/gem/gem_judgement.h"
-#include "validation/gem/gem_optimum.h"
+#include "validation/measure/gem/gem_judgement.h"
+#include "validation/measure/gem/gem_optimum.h"
 
 /* X(name, summary): every verb NAME is `int abbe_gem_NAME(int argc, char **argv)`. */
 #define ABBE_GEM_VERBS(X)                                                                          \
@@ -26,8 +26,8 @@
   X(optimise, "the crown and pavilion angles that do best in a stone, meets kept")                 \
   X(convert, "a design as .asc or .gem, or as a solid: STL, OBJ, glTF")
 
-/* The pairs of one search by several processes (validation/gem/ranked_optimum.h); rank 0 writes and
- * says what came of it. Gives the exit code. */
+/* The pairs of one search by several processes (validation/measure/gem/ranked_optimum.h); rank 0
+ * writes and says what came of it. Gives the exit code. */
 int abbe_gem_optimise_by_ranks(int argc, char **argv, abbe_rank_job *job);
 
 /* To path, .png or .svg: the measure over both angles. */

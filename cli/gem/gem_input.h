@@ -9,7 +9,7 @@
 #include "scenes/cuts/cut_measures.h"
 #include "scenes/cuts/cut_polyhedron.h"
 #include "spectral/materials/material_table.h"
-#include "validation/gem/gem_stone.h"
+#include "validation/measure/gem/gem_stone.h"
 
 #include <argp.h>
 #include <stdbool.h>

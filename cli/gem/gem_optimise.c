@@ -8,9 +8,9 @@
 #include "cli/gem/gem_input.h"
 
 #include "scenes/cuts/cut_stretch.h"
-#include "validation/gem/gem_grid_file.h"
-#include "validation/gem/gem_optimum.h"
-#include "validation/ranks/ranked_optimum.h"
+#include "validation/lab/ranked_optimum.h"
+#include "validation/measure/gem/gem_grid_file.h"
+#include "validation/measure/gem/gem_optimum.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>

@@ -7,7 +7,7 @@
 #include "colorimetry/plot/sheet.h"
 #include "scenes/cuts/cut_file.h"
 #include "scenes/cuts/cut_stretch.h"
-#include "validation/gem/gem_maps.h"
+#include "validation/measure/gem/gem_maps.h"
 
 #include <limits.h>
 #include <math.h>

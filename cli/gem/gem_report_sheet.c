@@ -6,7 +6,7 @@
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/plot/sheet.h"
-#include "validation/gem/gem_maps.h"
+#include "validation/measure/gem/gem_maps.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,8 +3,8 @@
 #include "base/clock.h"
 #include "cli/base/progress.h"
 
-#include "validation/passes/bounded_trace.h"
-#include "validation/passes/checked_picture.h"
+#include "validation/trace/bounded_trace.h"
+#include "validation/trace/checked_picture.h"
 
 /* Photons a side of a pass that checks: few, so that a coarse picture is checked soon. */
 enum { CHECK_PHOTONS = 256 };

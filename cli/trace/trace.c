@@ -9,9 +9,9 @@
 
 #include "library/choice/matched_physics.h"
 #include "scenes/import/scene_file.h"
-#include "validation/tracer/checkpoint.h"
-#include "validation/tracer/trace_run.h"
-#include "validation/tracer/tracer.h"
+#include "validation/trace/tracer/checkpoint.h"
+#include "validation/trace/tracer/trace_run.h"
+#include "validation/trace/tracer/tracer.h"
 
 #include <argp.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 
 #include "cli/base/progress.h"
 
-#include "validation/tracer/checkpoint.h"
+#include "validation/trace/tracer/checkpoint.h"
 
 #include <unistd.h>
 

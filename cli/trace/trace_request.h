@@ -7,9 +7,9 @@
 #include "cli/options/scene_input.h"
 #include "cli/options/screen_options.h"
 #include "cli/options/spectral_options.h"
-#include "validation/tracer/ranked_run.h"
-#include "validation/tracer/trace_run.h"
-#include "validation/tracer/tracer.h"
+#include "validation/trace/tracer/ranked_run.h"
+#include "validation/trace/tracer/trace_run.h"
+#include "validation/trace/tracer/tracer.h"
 
 #include <argp.h>
 

@@ -5,7 +5,7 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
-#include "validation/denoise/denoise.h"
+#include "validation/trace/denoise.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>

@@ -5,7 +5,7 @@
 #define ABBE_LIBRARY_CHOICE_MATCHED_PHYSICS_H
 
 #include "scenes/scene.h"
-#include "validation/transport/physics.h"
+#include "validation/trace/transport/physics.h"
 
 /* The physics of the default profile over that range of wavelengths (0, 0: the default one). Errors
  * of abbe_plan_make. */

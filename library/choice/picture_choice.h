@@ -12,7 +12,7 @@
 
 #include "gl/accuracy/preset.h"
 #include "scenes/scene.h"
-#include "validation/passes/pass_error.h"
+#include "validation/trace/pass_error.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -2,9 +2,9 @@
 
 #include "base/clock.h"
 #include "gl/accuracy/frame_times.h"
-#include "validation/compare/compare.h"
-#include "validation/denoise/denoise.h"
-#include "validation/tracer/tracer.h"
+#include "validation/measure/compare.h"
+#include "validation/trace/denoise.h"
+#include "validation/trace/tracer/tracer.h"
 
 #include <math.h>
 #include <stdlib.h>

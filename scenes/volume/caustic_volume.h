@@ -5,7 +5,7 @@
  * are filled for a light where it stands (exit_light.h).
  *
  * All in the object's own coordinates: places from its centre in m, as it stood when the volume was
- * made. It holds numbers; validation/volume/volume_fill.h finds them out, its file stores
+ * made. It holds numbers; validation/lab/volume_fill.h finds them out, its file stores
  * them.
  */
 #ifndef ABBE_SCENES_VOLUME_CAUSTIC_VOLUME_H

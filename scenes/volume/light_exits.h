@@ -8,7 +8,7 @@
  * by how it changes with the light, so that what stands beside its place does so by the square of
  * the distance between nodes. Of an object that turns and reflections bring onto itself it takes
  * the points of the part that these make the whole of. Places are from the object's centre in m, as
- * it stood when the table was made. It holds numbers; validation/volume/exit_fill.h finds them out.
+ * it stood when the table was made. It holds numbers; validation/lab/exit_fill.h finds them out.
  */
 #ifndef ABBE_SCENES_VOLUME_LIGHT_EXITS_H
 #define ABBE_SCENES_VOLUME_LIGHT_EXITS_H

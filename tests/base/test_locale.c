@@ -16,9 +16,9 @@
 #include "spectral/formats/material_import.h"
 #include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
-#include "validation/compare/field.h"
-#include "validation/known/known_answers.h"
-#include "validation/tracer/reference.h"
+#include "validation/lab/known/known_answers.h"
+#include "validation/measure/field.h"
+#include "validation/trace/tracer/reference.h"
 
 /* ---- what is noted of a run ---- */
 

@@ -5,7 +5,7 @@
 #include "colorimetry/weights.h"
 #include "spectral/optics.h"
 #include "spectral/wavelengths.h"
-#include "validation/tracer/tracer.h"
+#include "validation/trace/tracer/tracer.h"
 
 #include <math.h>
 #include <string.h>

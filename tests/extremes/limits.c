@@ -1,7 +1,7 @@
 #include "tests/extremes/limits.h"
 
 #include "tests/extremes/laws.h"
-#include "validation/tracer/tracer.h"
+#include "validation/trace/tracer/tracer.h"
 
 #include <math.h>
 #include <stdlib.h>

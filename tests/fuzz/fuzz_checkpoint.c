@@ -3,8 +3,8 @@
 #include "tests/fuzz/memory_file.h"
 
 #include "scenes/import/scene_file.h"
-#include "validation/tracer/checkpoint.h"
-#include "validation/tracer/tracer.h"
+#include "validation/trace/tracer/checkpoint.h"
+#include "validation/trace/tracer/tracer.h"
 
 const char *const fuzz_words[] = {"\x02\x10", "\x03\x08", "abbe checkpoint 10\n", "\n\n", "scene ",
                                   "physics ", NULL};

@@ -5,7 +5,7 @@
 #include "tests/fuzz/memory_file.h"
 
 #include "scenes/import/scene_file.h"
-#include "validation/volume/volume_fill.h"
+#include "validation/lab/volume_fill.h"
 
 const char *const fuzz_words[] = {
     "\x02\x10", "\x03\x30", "\x03\x38", "abbe volume 1\n", "\x03\x40\x40\x00\x01", NULL};

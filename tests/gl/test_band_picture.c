@@ -4,7 +4,7 @@
 #include "colorimetry/spectral_picture/relight.h"
 #include "colorimetry/weights.h"
 #include "gl/band_picture.h"
-#include "validation/tracer/tracer.h"
+#include "validation/trace/tracer/tracer.h"
 
 enum { SIDE = 48, BANDS = 10 };
 

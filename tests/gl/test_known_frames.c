@@ -3,7 +3,7 @@
 #include "tests/gl/frame.h"
 
 #include "base/maths.h"
-#include "validation/known/forms/closed_form.h"
+#include "validation/lab/known/forms/closed_form.h"
 
 static const abbe_render_desc tiny =
     FIELDS(.width = 16, .height = 16, .photons = 256, .map_size = 512, .space = ABBE_RGB_SPACE_XYZ,

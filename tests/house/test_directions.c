@@ -91,10 +91,10 @@ TEST(the_sources_keep_the_directions) {
 TEST(the_rule_refuses_wrong_directions) {
   assert_true(may_use("gl/plan/plan.c", "scenes/scene.h"));
   assert_true(may_use("scenes/scene.c", "colorimetry/image/image.h"));
-  assert_true(may_use("cli/render/render.c", "validation/tracer/tracer.h"));
-  assert_false(may_use("validation/tracer/tracer.c", "library/choice/picture_choice.h"));
-  assert_false(may_use("validation/tracer/tracer.c", "gl/plan/plan.h"));
-  assert_false(may_use("gl/plan/plan.c", "validation/tracer/tracer.h"));
+  assert_true(may_use("cli/render/render.c", "validation/trace/tracer/tracer.h"));
+  assert_false(may_use("validation/trace/tracer/tracer.c", "library/choice/picture_choice.h"));
+  assert_false(may_use("validation/trace/tracer/tracer.c", "gl/plan/plan.h"));
+  assert_false(may_use("gl/plan/plan.c", "validation/trace/tracer/tracer.h"));
   assert_false(may_use("base/file.c", "colorimetry/image/image.h"));
   assert_false(may_use("base/file.c", "spectral/optics.h"));
   assert_false(may_use("colorimetry/image/exr.c", "scenes/scene.h"));

@@ -11,8 +11,8 @@
 #include "scenes/export/pov_file.h"
 #include "scenes/import/scene_file.h"
 #include "spectral/editing/table_edit.h"
-#include "validation/tracer/checkpoint.h"
-#include "validation/volume/volume_checkpoint.h"
+#include "validation/lab/volume_checkpoint.h"
+#include "validation/trace/tracer/checkpoint.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -3,8 +3,8 @@
 #include "cli/view/work/view_worker.h"
 #include "gl/renderer.h"
 #include "scenes/import/scene_file.h"
-#include "validation/tracer/tracer.h"
-#include "validation/volume/volume_fill.h"
+#include "validation/lab/volume_fill.h"
+#include "validation/trace/tracer/tracer.h"
 
 #include <math.h>
 #include <stdio.h>

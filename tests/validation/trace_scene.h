@@ -4,7 +4,7 @@
 
 #include "tests/scenes/scene_text.h"
 
-#include "validation/tracer/tracer.h"
+#include "validation/trace/tracer/tracer.h"
 
 HOLDS(abbe_tracer);
 

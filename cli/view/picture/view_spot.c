@@ -3,7 +3,7 @@
 #include "base/clock.h"
 #include "base/maths.h"
 #include "cli/view/state/view_camera.h"
-#include "validation/tracer/tracer.h"
+#include "validation/trace/tracer/tracer.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #include "cli/view/picture/view_feed.h"
 #include "cli/view/work/view_scene.h"
 #include "gl/renderer.h"
-#include "validation/tracer/tracer.h"
+#include "validation/trace/tracer/tracer.h"
 
 #include <math.h>
 #include <pthread.h>

@@ -3,7 +3,7 @@
 #include "tests/gl/frame.h"
 
 #include "gl/accuracy/error_bars.h"
-#include "validation/compare/compare.h"
+#include "validation/measure/compare.h"
 
 static const abbe_render_desc coarse_frame = {
     .width = 96, .height = 96, .photons = 64, .map_size = 256, .wavelengths = 5, .aovs = true};

@@ -3,7 +3,7 @@
 #include "tests/gl/frame.h"
 
 #include "base/maths.h"
-#include "validation/known/forms/closed_form.h"
+#include "validation/lab/known/forms/closed_form.h"
 
 /* Bins are wider than the seam between two levels of the map. */
 enum { SIDE = 256, BINS = 4 };

@@ -3,7 +3,7 @@
 #include "tests/gl/frame.h"
 
 #include "base/maths.h"
-#include "validation/tracer/tracer.h"
+#include "validation/trace/tracer/tracer.h"
 
 static double mean_of(const abbe_image *image, const char *name) {
   const size_t channel = abbe_image_find_channel(image, name);

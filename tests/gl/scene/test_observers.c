@@ -3,7 +3,7 @@
 #include "tests/gl/frame.h"
 
 #include "colorimetry/spectral_picture/relight.h"
-#include "validation/tracer/tracer.h"
+#include "validation/trace/tracer/tracer.h"
 
 enum { SIDE = 32, BANDS = 40, PASSES = 12 };
 

@@ -4,7 +4,7 @@
 
 #include "colorimetry/reflectance/reflected_light.h"
 #include "gl/plan/plan.h"
-#include "validation/tracer/tracer.h"
+#include "validation/trace/tracer/tracer.h"
 
 enum { SIDE = 48, PASSES = 6 };
 

@@ -4,7 +4,7 @@
 
 #include "colorimetry/observer.h"
 #include "colorimetry/rgb_space.h"
-#include "validation/tracer/tracer.h"
+#include "validation/trace/tracer/tracer.h"
 
 /* Seen straight, and lit at right angles: the radiance is the irradiance times the reflectance over
  * pi. */

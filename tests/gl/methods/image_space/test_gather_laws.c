@@ -2,7 +2,7 @@
  */
 #include "tests/gl/methods/image_space/floor_map.h"
 
-#include "validation/known/forms/closed_form.h"
+#include "validation/lab/known/forms/closed_form.h"
 
 GROUP(make_context, free_context);
 

@@ -4,7 +4,7 @@
 #include "tests/gl/frame.h"
 
 #include "gl/methods/pinholes/pinhole_samples.h"
-#include "validation/known/forms/closed_form.h"
+#include "validation/lab/known/forms/closed_form.h"
 
 #include "base/maths.h"
 

@@ -2,7 +2,7 @@
  * is that which rays show, and of a renderer made anew. */
 #include "tests/gl/frame.h"
 
-#include "validation/volume/volume_fill.h"
+#include "validation/lab/volume_fill.h"
 
 static const char ball[] =
     CAMERA SUN FLOOR "- {name: orb, shape: sphere, radius: 0.1, levels: 4, material: crown, "

@@ -8,7 +8,7 @@
 #include "scenes/object_motion.h"
 #include "scenes/volume/exits/exit_pages.h"
 #include "scenes/volume/half.h"
-#include "validation/volume/volume_fill.h"
+#include "validation/lab/volume_fill.h"
 
 enum { MAP_TEXELS = 16 }; /* a side of a page: so few that it has one level */
 

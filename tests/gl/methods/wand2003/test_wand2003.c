@@ -1,7 +1,7 @@
 /* Caustics by projected surroundings: linear in light, the same turned, what one pinhole adds and
  * by how much its softening lessens that, mirrors' closed forms, and when footprints matter. */
 #include "tests/gl/frame.h"
-#include "validation/known/forms/closed_form.h"
+#include "validation/lab/known/forms/closed_form.h"
 
 #include "base/maths.h"
 #include "scenes/samples/surface_samples.h"

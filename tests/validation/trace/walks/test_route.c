@@ -1,0 +1,68 @@
+#include "tests/scenes/scene_text.h"
+
+#include "base/maths.h"
+#include "spectral/optics.h"
+#include "validation/trace/walks/route.h"
+
+#define SLAB                                                                                       \
+  "- {name: slab, shape: box, size: [0.4, 0.4, 0.1], transform: [{translate: [0, 0, 0.3]}], "      \
+  "material: flat}\n"
+#define WATER_IN_GLASS                                                                             \
+  "- {name: outer, shape: sphere, radius: 0.1, transform: [{translate: [0, 0, 0.3]}], "            \
+  "material: flat}\n"                                                                              \
+  "- {name: inner, shape: sphere, radius: 0.05, transform: [{translate: [0, 0, 0.3]}], "           \
+  "material: crown}\n"
+
+static size_t follow(const char *text, const double from[3], const double d[3], const char *choices,
+                     abbe_route_vertex vertex[16]) {
+  OWNED(abbe_scene, scene) = scene_of(text);
+  MADE(abbe_geometry, g, abbe_geometry_make(&scene, &g, &error));
+  size_t count;
+  OK(abbe_route_follow(&g, from, d, 550, choices, vertex, 16, &count, &error));
+  return count;
+}
+
+/* A slab moves a ray sideways by d sin(i) (1 - cos(i) / (n cos(t))) and does not turn it. */
+TEST(a_slab_shifts_and_does_not_turn) {
+  double angle = 0.6, d[3] = {sin(angle), 0, -cos(angle)}, from[3] = {-0.2, 0, 0.6};
+  abbe_route_vertex v[16];
+  assert_int_equal(follow(CAMERA POINT_LIGHT FLOOR SLAB, from, d, "", v), 3);
+  assert_int_equal(v[0].event, ABBE_ROUTE_TRANSMITTED);
+  assert_int_equal(v[2].event, ABBE_ROUTE_LANDED);
+  assert_true(fabs(v[0].reflectance - abbe_optics_fresnel(cos(angle), 1 / 1.5)) < 1e-6);
+  assert_true(v[1].inside_n == 1.5);
+  for (int k = 0; k < 3; k++) assert_true(fabs(v[1].direction[k] - d[k]) < 1e-6);
+  double straight = from[0] + from[2] * tan(angle);
+  double cos_t = abbe_optics_cos_refracted(cos(angle), 1 / 1.5, NULL);
+  double shift = 0.1 * sin(angle) * (1 - cos(angle) / (1.5 * cos_t));
+  assert_true(fabs(straight - v[2].position[0] - shift / cos(angle)) < 2e-6);
+}
+
+TEST(choices_are_kept) {
+  double d[3] = {0.1, 0, -1}, from[3] = {0, 0, 0.6};
+  abbe_vector_normalise(d);
+  abbe_route_vertex v[16];
+  assert_int_equal(follow(CAMERA POINT_LIGHT FLOOR SLAB, from, d, "r", v), 2);
+  assert_int_equal(v[0].event, ABBE_ROUTE_REFLECTED);
+  assert_int_equal(v[1].event, ABBE_ROUTE_ESCAPED);
+  assert_int_equal(follow(CAMERA POINT_LIGHT FLOOR SLAB, from, d, "trr", v), 5);
+  assert_int_equal(v[4].event, ABBE_ROUTE_LANDED);
+  size_t count;
+  assert_int_equal(abbe_route_follow(&(abbe_geometry){0}, from, d, 550, "tx", v, 16, &count, NULL),
+                   ABBE_INVALID_ARGUMENT);
+}
+
+/* Along the axis of concentric balls: air, 1.5, crown, 1.5, air; the indices are those of the
+ * later object where both are. */
+TEST(the_later_refractor_is_there) {
+  abbe_route_vertex v[16];
+  double crown = 1.5 + 0.006 / (0.55 * 0.55), expected[5] = {1, 1.5, crown, 1.5, 1};
+  assert_int_equal(follow(CAMERA POINT_LIGHT FLOOR WATER_IN_GLASS, (double[3]){0, 0, 0.6},
+                          (double[3]){0, 0, -1}, "", v),
+                   5);
+  for (int i = 0; i < 4; i++) assert_true(fabs(v[i].inside_n - expected[i]) < 1e-12);
+  double shares[4] = {0.04, pow((crown - 1.5) / (crown + 1.5), 2), 0, 0.04};
+  shares[2] = shares[1];
+  for (int i = 0; i < 4; i++) assert_true(fabs(v[i].reflectance - shares[i]) < 1e-6);
+  assert_true(fabs(v[2].distance - 0.1) < 1e-6);
+}

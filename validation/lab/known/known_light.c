@@ -1,0 +1,162 @@
+#include "validation/lab/known/known_light.h"
+
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PASSES = 64, MIN_PHOTONS = 256 };
+
+size_t abbe_known_passes(const abbe_known_run *run, uint64_t samples, abbe_trace_desc *desc) {
+  uint64_t wanted = run->options->samples > 0 ? run->options->samples : samples;
+  uint64_t passes = PASSES, photons = wanted / PASSES;
+  if (photons > ABBE_TRACER_MAX_PHOTONS) {
+    photons = ABBE_TRACER_MAX_PHOTONS;
+    passes = wanted / photons;
+  }
+  desc->photons = photons > MIN_PHOTONS ? (size_t)photons : MIN_PHOTONS;
+  desc->seed = (uint32_t)run->options->seed;
+  desc->threads = run->options->threads;
+  return (size_t)passes;
+}
+
+void abbe_known_narrow(double lambda_nm, abbe_trace_desc *desc) {
+  desc->min_nm = lambda_nm - 0.05;
+  desc->max_nm = lambda_nm + 0.05;
+}
+
+/* The rings' sums of the mean so far. */
+static abbe_result sum_so_far(const abbe_tracer *tracer, const abbe_rings *rings, double (*sum)[3],
+                              abbe_error *error) {
+  static const char *const names[3] = {"X", "Y", "Z"};
+  double one[ABBE_RINGS_MAX];
+  abbe_image map = {0};
+  abbe_result result = abbe_tracer_map(tracer, &map, error);
+  for (int k = 0; k < 3 && result == ABBE_OK; k++) {
+    size_t channel = abbe_image_find_channel(&map, names[k]);
+    if (channel == (size_t)-1 || map.width != rings->width || map.height != rings->height) {
+      result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                              "the receiver map has no channel %s of %zu x %zu texels", names[k],
+                              rings->width, rings->height);
+      break;
+    }
+    abbe_rings_sum(rings, map.data + channel, map.channels, false, one);
+    for (size_t i = 0; i < rings->count; i++) sum[i][k] = one[i];
+  }
+  abbe_image_free(&map);
+  return result;
+}
+
+/* The last pass alone is k times the mean of k passes less k - 1 times that of k - 1. */
+static abbe_result one_pass(abbe_tracer *tracer, const abbe_rings *rings, double k,
+                            double (*mean)[3], double (*sum)[3], abbe_error *error) {
+  double before[ABBE_RINGS_MAX][3];
+  memcpy(before, mean, rings->count * sizeof *mean);
+  abbe_result result = abbe_tracer_pass(tracer, NULL, error);
+  if (result == ABBE_OK) result = sum_so_far(tracer, rings, mean, error);
+  for (size_t i = 0; i < rings->count && result == ABBE_OK; i++)
+    for (int c = 0; c < 3; c++) sum[i][c] = k * mean[i][c] - (k - 1) * before[i][c];
+  return result;
+}
+
+abbe_result abbe_known_measure(const abbe_known_run *run, double from, double to,
+                               const abbe_scene *scene, const abbe_trace_desc *desc, size_t passes,
+                               const abbe_rings *rings, double (*sum)[3], abbe_error *error) {
+  abbe_trace_desc d = *desc;
+  d.no_picture = true;
+  d.map_width = rings->width;
+  d.map_height = rings->height;
+  d.layout = &rings->layout;
+  double mean[ABBE_RINGS_MAX][3] = {{0}};
+  abbe_tracer *tracer = NULL;
+  abbe_result result = abbe_tracer_make(scene, &d, &tracer, error);
+  for (size_t p = 0; p < passes && result == ABBE_OK; p++) {
+    result = one_pass(tracer, rings, (double)p + 1, mean, sum + p * rings->count, error);
+    double done = from + (to - from) * (double)(p + 1) / (double)passes;
+    if (result == ABBE_OK) result = abbe_known_progress(run, done, error);
+  }
+  abbe_tracer_free(tracer);
+  return result;
+}
+
+void abbe_known_mean(double (*sum)[3], size_t passes, size_t rings, size_t first, size_t end,
+                     int channel, double *mean, double *standard_error) {
+  double n = (double)passes, total = 0, square = 0;
+  for (int round = 0; round < 2; round++)
+    for (size_t p = 0; p < passes; p++) {
+      double x = 0;
+      for (size_t i = first; i < end; i++) x += sum[p * rings + i][channel];
+      if (round == 0)
+        total += x / n;
+      else
+        square += (x - total) * (x - total);
+    }
+  *mean = total;
+  *standard_error = passes > 1 ? sqrt(square / (n - 1) / n) : INFINITY;
+}
+
+double abbe_known_sigmas(size_t passes) {
+  double tail = gsl_cdf_ugaussian_Q(ABBE_KNOWN_SIGMAS);
+  return passes > 1 ? gsl_cdf_tdist_Qinv(tail, (double)passes - 1) : INFINITY;
+}
+
+/* The value of all passes so far. */
+static abbe_result value_so_far(const abbe_tracer *tracer, const abbe_known_setting *s,
+                                double *value, abbe_error *error) {
+  abbe_trace_statistics statistics;
+  abbe_tracer_statistics(tracer, &statistics);
+  *value = statistics.ledger.reached;
+  if (s->channel == NULL) return ABBE_OK;
+  abbe_image picture = {0};
+  abbe_result result = abbe_tracer_picture(tracer, &picture, error);
+  if (result != ABBE_OK) return result;
+  const size_t at = abbe_image_find_channel(&picture, s->channel);
+  const size_t pixels = picture.width * picture.height;
+  if (at >= picture.channels)
+    result =
+        abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the picture has no channel %s", s->channel);
+  *value = 0;
+  for (size_t i = 0; result == ABBE_OK && i < pixels; i++) {
+    const double x = (2 * (double)(i % picture.width) + 1) / (double)picture.width - 1;
+    const double y = 1 - (2 * (double)(i / picture.width) + 1) / (double)picture.height;
+    const double weight = s->weight != NULL ? s->weight(x, y) : 1;
+    *value += weight * (double)picture.data[i * picture.channels + at] / (double)pixels;
+  }
+  abbe_image_free(&picture);
+  return result;
+}
+
+static abbe_result add_mean(abbe_known_run *run, const abbe_known_setting *s, double (*sum)[3],
+                            size_t passes, abbe_error *error) {
+  abbe_known_answer row = {
+      .unit = s->unit, .exact = s->exact, .useful = s->useful, .reason = s->reason};
+  abbe_known_mean(sum, passes, 1, 0, 1, 1, &row.traced, &row.standard_error);
+  row.tolerance = abbe_known_sigmas(passes) * row.standard_error + s->slack;
+  snprintf(row.quantity, sizeof row.quantity, "%s", s->what);
+  return abbe_known_add(run, row, error);
+}
+
+abbe_result abbe_known_add_setting(abbe_known_run *run, const abbe_known_setting *setting,
+                                   const abbe_scene *scene, double from, double to,
+                                   abbe_error *error) {
+  abbe_tracer *tracer = NULL;
+  abbe_trace_desc desc = {
+      .no_map = true, .space = ABBE_RGB_SPACE_XYZ, .width = setting->side, .height = setting->side};
+  const size_t passes = abbe_known_passes(run, setting->samples, &desc);
+  double(*sum)[3] = calloc(passes, sizeof *sum), before = 0, mean = 0;
+  abbe_result result = sum != NULL ? abbe_tracer_make(scene, &desc, &tracer, error)
+                                   : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for passes");
+  for (size_t p = 0; p < passes && result == ABBE_OK; p++) {
+    result = abbe_tracer_pass(tracer, NULL, error);
+    if (result == ABBE_OK) result = value_so_far(tracer, setting, &mean, error);
+    sum[p][1] = ((double)p + 1) * mean - (double)p * before;
+    before = mean;
+    const double done = from + (to - from) * (double)(p + 1) / (double)passes;
+    if (result == ABBE_OK) result = abbe_known_progress(run, done, error);
+  }
+  if (result == ABBE_OK) result = add_mean(run, setting, sum, passes, error);
+  abbe_tracer_free(tracer);
+  free(sum);
+  return result;
+}

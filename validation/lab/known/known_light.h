@@ -1,0 +1,65 @@
+/* known_light.h: what the groups of known answers share that trace whole runs:
+ * scenes as text, a run's receiver map ring by ring and pass by pass, and the tolerance of a mean.
+ * Internal to validation/.
+ */
+#ifndef ABBE_VALIDATION_LAB_KNOWN_KNOWN_LIGHT_H
+#define ABBE_VALIDATION_LAB_KNOWN_KNOWN_LIGHT_H
+
+#include "scenes/scene.h"
+#include "validation/lab/known/known_group.h"
+#include "validation/lab/known/rings.h"
+#include "validation/trace/tracer/tracer.h"
+
+/* A run for known answers: passes enough for their spread, and photons a pass such that all of
+ * them are the options' samples, or the group's own number. Fills seed, threads and photons. */
+size_t abbe_known_passes(const abbe_known_run *run, uint64_t samples, abbe_trace_desc *desc);
+
+/* A narrow band around lambda_nm: one wavelength for every purpose here. */
+void abbe_known_narrow(double lambda_nm, abbe_trace_desc *desc);
+
+/* XYZ of every ring in every pass: sum[passes * rings->count], W, pass by pass. The map's size and
+ * layout are the rings'. Progress runs from `from` to `to` of the group. */
+abbe_result abbe_known_measure(const abbe_known_run *run, double from, double to,
+                               const abbe_scene *scene, const abbe_trace_desc *desc, size_t passes,
+                               const abbe_rings *rings, double (*sum)[3], abbe_error *error);
+
+/* Mean over passes of channel `channel` summed over rings [first, end), and its standard error. */
+void abbe_known_mean(double (*sum)[3], size_t passes, size_t rings, size_t first, size_t end,
+                     int channel, double *mean, double *standard_error);
+
+/* Student's factor: a mean over so many passes is as seldom this many of its standard errors off
+ * as a normal one is ABBE_KNOWN_SIGMAS.  */
+double abbe_known_sigmas(size_t passes);
+
+/* A whole run of which one number is known: a weighted mean over its picture, or what its ledger
+ * has. */
+typedef struct abbe_known_setting {
+  const char *what, *unit, *reason; /* as in abbe_known_answer */
+  double exact;
+  double slack;  /* that the value may be off beside noise */
+  double useful; /* as in abbe_known_answer */
+  uint64_t samples;
+  size_t side;         /* pixels of the picture */
+  const char *channel; /* whose mean over the picture is known; NULL: the flux that was met, W */
+  double (*weight)(double x, double y); /* weight of a pixel whose middle lies there, the picture
+                                           reaching from -1 to 1 both ways, y up; NULL: 1 */
+} abbe_known_setting;
+
+/* Traces the scene pass by pass and adds a row: the tolerance is the setting's slack and four
+ * standard errors, by the spread of the passes. Progress runs from `from` to `to` of the group. */
+abbe_result abbe_known_add_setting(abbe_known_run *run, const abbe_known_setting *setting,
+                                   const abbe_scene *scene, double from, double to,
+                                   abbe_error *error);
+
+/* The rows of one sphere, light and plane of the groups `sphere` and (white) `white`.
+ * ABBE_INVALID_ARGUMENT beyond the last. */
+abbe_result abbe_known_sphere_setting(abbe_known_run *run, size_t index, bool white,
+                                      abbe_error *error);
+/* The row of one pane of the groups `pane` and (absorbs) `absorption`; likewise. */
+abbe_result abbe_known_pane_setting(abbe_known_run *run, size_t index, bool absorbs,
+                                    abbe_error *error);
+/* The rows of one picture of the group `picture` (0: under a beam, 1: under a point light, 2:
+ * under a beam, through a pane). */
+abbe_result abbe_known_picture_setting(abbe_known_run *run, size_t index, abbe_error *error);
+
+#endif

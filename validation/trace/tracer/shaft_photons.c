@@ -1,0 +1,98 @@
+#include "validation/trace/tracer/shaft_photons.h"
+
+#include "validation/trace/transport/random.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- to the camera ---- */
+
+void abbe_shaft_photons_flush(abbe_shaft_photons *s) {
+  if (s->waiting == 0) return;
+  abbe_embree_occluded_16(s->geometry->embree, &s->packet, s->waiting);
+  for (size_t k = 0; k < s->waiting; k++)
+    if (!(s->packet.tfar[k] < 0)) s->add(s->user, &s->splat[k]);
+  s->rays += s->waiting;
+  s->waiting = 0;
+}
+
+static void aim_at_eye(abbe_shaft_photons *s, const float o[3], const float d[3], float distance) {
+  struct RTCRay16 *r = &s->packet;
+  const size_t k = s->waiting++;
+  r->org_x[k] = o[0];
+  r->org_y[k] = o[1];
+  r->org_z[k] = o[2];
+  r->dir_x[k] = d[0];
+  r->dir_y[k] = d[1];
+  r->dir_z[k] = d[2];
+  r->tnear[k] = 0;
+  r->tfar[k] = distance;
+  r->mask[k] = ABBE_GEOMETRY_ALL;
+  r->flags[k] = 0;
+}
+
+static void splat(abbe_shaft_photons *s, const abbe_light_stretch *from, const float p[3],
+                  float flux) {
+  float d[3], distance, per_pixel;
+  size_t pixel;
+  if (from->medium != s->eye_medium) return;
+  if (!abbe_trace_camera_pixel(s->camera, p, &pixel, &distance, d, &per_pixel)) return;
+  if (!(distance > s->near)) return;
+  float cosine = 0;
+  for (int k = 0; k < 3; k++) {
+    d[k] = -d[k];
+    cosine += d[k] * from->d[k];
+  }
+  const float metres = distance * (float)s->geometry->unit;
+  const float value =
+      flux * abbe_haze_phase(s->haze, from->medium, cosine) * per_pixel / (metres * metres) *
+      abbe_haze_left(s->haze, from->medium, p, d, 0, distance, from->step, from->within);
+  if (!(value > 0)) return;
+  s->splat[s->waiting] = (abbe_shaft_splat){pixel, from->step, value};
+  aim_at_eye(s, p, d, distance);
+  if (s->waiting == ABBE_SHAFT_LANES) abbe_shaft_photons_flush(s);
+}
+
+/* ---- to gathers ---- */
+
+static void keep(abbe_shaft_photons *s, const abbe_light_stretch *from, const float p[3],
+                 float flux) {
+  if (s->count == s->room) {
+    const size_t room = s->room > 0 ? 2 * s->room : 4096;
+    abbe_haze_photon *all = realloc(s->photon, room * sizeof *all);
+    s->full = s->full || all == NULL;
+    if (all == NULL) return;
+    s->photon = all;
+    s->room = room;
+  }
+  abbe_haze_photon *to = &s->photon[s->count++];
+  *to = (abbe_haze_photon){
+      .flux = flux, .colour = s->colour + from->step, .medium = (int32_t)from->medium};
+  memcpy(to->p, p, sizeof to->p);
+  memcpy(to->d, from->d, sizeof to->d);
+}
+
+void abbe_shaft_photons_take(void *user, const abbe_light_stretch *from) {
+  abbe_shaft_photons *s = user;
+  const abbe_haze *h = s->haze;
+  float near = 0, far = from->length, random[4], density, p[3];
+  if (!abbe_haze_scatters(h, from->medium) ||
+      !abbe_haze_clip(h, from->medium, from->o, from->d, &near, &far) || !(far < INFINITY))
+    return;
+  const float extinction = abbe_haze_extinction(h, from->medium, from->step, from->within);
+  abbe_random4(from->id, from->steps, s->pass, s->seed ^ 0x73686674u, random);
+  const float t = abbe_haze_place(extinction, far - near, random[0], &density);
+  const float flux = from->flux * expf(-t * extinction) / density *
+                     abbe_haze_scattering(h, from->medium, from->step, from->within);
+  if (!(flux > 0)) return;
+  for (int k = 0; k < 3; k++) p[k] = from->o[k] + (near + t) * from->d[k];
+  splat(s, from, p, flux);
+  keep(s, from, p, flux);
+}
+
+void abbe_shaft_photons_free(abbe_shaft_photons *s) {
+  if (s == NULL) return;
+  free(s->photon);
+  s->photon = NULL;
+  s->count = s->room = 0;
+}

@@ -1,0 +1,75 @@
+/* eye_walk.h: what one pixel sees in one pass: paths from the camera through glass to what shows.
+ *
+ * Receivers are lit directly, with shadows, by point, spot, directional and disk lights, and by the
+ * environment, which is seen where a path meets nothing. A pixel
+ * that shows a refractor is split: the mirror image on its outside, and a few wavelengths that go
+ * through it. At every further interface both ways on are followed; Russian roulette takes what is
+ * faint. The caustic on a
+ * receiver seen that way comes from the photons around the place (consistent); on a receiver that
+ * the camera sees straight it is left out, for the photons themselves find the camera (unbiased).
+ * In haze it is alike: what comes straight from lights is sampled along every path, what comes
+ * through refractors and off mirrors is gathered or, where it is seen straight, left to the
+ * photons. Internal to validation/.
+ */
+#ifndef ABBE_VALIDATION_TRACE_WALKS_EYE_WALK_H
+#define ABBE_VALIDATION_TRACE_WALKS_EYE_WALK_H
+
+#include "validation/trace/medium/haze_grid.h"
+#include "validation/trace/transport/bands.h"
+#include "validation/trace/transport/environment_light.h"
+#include "validation/trace/transport/geometry.h"
+#include "validation/trace/transport/media.h"
+#include "validation/trace/transport/mirrors.h"
+#include "validation/trace/transport/physics.h"
+#include "validation/trace/transport/reflectance.h"
+#include "validation/trace/transport/spectral_sampling.h"
+#include "validation/trace/walks/camera.h"
+#include "validation/trace/walks/photon_grid.h"
+
+/* Variance times rays is about least with it, in cut stones, prisms and rings. */
+#define ABBE_EYE_LEAST_BRANCH 0.4f
+
+/* All that a walk reads; nothing is written. */
+typedef struct abbe_eye_walk {
+  const abbe_geometry *geometry;
+  const abbe_media *media;
+  const abbe_mirrors *mirrors;
+  const abbe_spectral_sampling *sampling;
+  const abbe_bands *bands;
+  const abbe_trace_camera *camera;
+  const abbe_reflectance *reflectance;
+  const abbe_environment_light *environment; /* may be zeroed: none */
+  const float (*colour)[3]; /* [lights][steps] in the picture's space, mean: white */
+  const float (*white)[3];  /* [lights] in the picture's space */
+  abbe_physics physics;
+  uint32_t seed;
+  abbe_media_set inside; /* refractors that the camera is in; their media are clear */
+  float least_branch; /* share of what came into the glass below which roulette decides; 1: at all
+                         interfaces */
+  const uint8_t *samples;       /* [pixels] of each pixel in a pass; NULL: one */
+  const abbe_photon_grid *grid; /* NULL: no photons */
+  float radius;                 /* radius of the gather, frame */
+  double window_nm;             /* half the range of wavelengths that a dispersed path gathers */
+  const abbe_haze_grid *shafts; /* grid of photons that a medium scatters; NULL: none */
+  float shaft_radius;           /* radius of their gather, frame */
+  float shaft_near; /* as far as this the camera gathers those that it sees straight, by a quarter
+                       of the radius, frame */
+} abbe_eye_walk;
+
+typedef struct abbe_eye_sample {
+  float rgb[3];               /* radiance, W/(m2 sr), white Y = 1 */
+  float caustic[3];           /* the part that came to its receiver through a refractor */
+  float band[ABBE_BANDS_MAX]; /* W/(m2 sr nm) */
+  float albedo[3];            /* reflectance of what shows, by each path's share of the pixel */
+  float normal[3];            /* normal of what the ray meets first, towards the camera; none: 0 */
+  float depth;                /* along the ray to there, frame; none: 0 */
+  bool refractor;             /* the pixel's ray met one, or a mirror, first */
+  uint32_t rays;
+} abbe_eye_sample;
+
+/* What the pixel (row * width + column) shows in a pass: the mean of its samples, spread evenly
+ * over the pixel and the wavelengths. */
+void abbe_eye_walk_pixel(const abbe_eye_walk *walk, size_t pixel, uint32_t pass,
+                         abbe_eye_sample *out);
+
+#endif

@@ -1,0 +1,500 @@
+#include "validation/trace/walks/light_walk.h"
+
+#include "validation/trace/transport/interface.h"
+#include "validation/trace/walks/light_path.h"
+#include "validation/trace/walks/ray_batch.h"
+#include "validation/trace/walks/scatter.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  LANES = ABBE_RAY_LANES,
+  PACKETS = ABBE_LIGHT_WALK_HITS / LANES,
+  SMALL_SCENE = 4096,  /* faces */
+  COHERENT_BOUNCES = 2 /* how often rays of a packet are scattered before they are separated */
+};
+
+/* Paths that are followed side by side, and the ray of each. */
+typedef struct ray_batch {
+  size_t count;
+  struct RTCRayHit16 ray[PACKETS];
+  abbe_light_path path[ABBE_LIGHT_WALK_HITS];
+} ray_batch;
+
+/* Paths on the inner side of one solid's surface. */
+typedef struct inner_batch {
+  size_t count;
+  uint32_t refractor;
+  abbe_inner_path inner[ABBE_LIGHT_WALK_HITS];
+  abbe_light_path path[ABBE_LIGHT_WALK_HITS];
+} inner_batch;
+
+struct abbe_light_walk {
+  abbe_lamp_rays lamp_rays;
+  const abbe_geometry *g;
+  const abbe_media *media;
+  const abbe_mirrors *mirrors;
+  abbe_physics physics;
+  uint32_t seed;
+  uint64_t rays;
+  ray_batch *batch, *next; /* rays of this bounce and of the next */
+  inner_batch *inner;
+  uint32_t shift[4]; /* shifts of the pass's even decisions */
+  unsigned splits;   /* interfaces at which paths are split, a bit each */
+  bool small;        /* so few faces that packets stay together wherever their rays go */
+  bool *hidden;      /* [lights] abbe_lamp_is_hidden */
+  bool for_map;
+  abbe_light_walk_stretch take; /* NULL: nobody watches */
+  void *watcher;
+  abbe_ray_record record;
+  abbe_light_walk_room room;
+};
+
+abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media *media,
+                                 const abbe_mirrors *mirrors, const abbe_physics *physics,
+                                 uint32_t seed, abbe_light_walk **out, abbe_error *error) {
+  assert(geometry->scene);
+  *out = NULL;
+  abbe_light_walk *w = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
+  size_t lights = geometry->scene->light_count;
+  if (w != NULL) {
+    memset(w, 0, sizeof *w);
+    w->g = geometry;
+    w->media = media;
+    w->mirrors = mirrors;
+    w->physics = *physics;
+    w->seed = seed;
+    w->for_map = true;
+    w->batch = aligned_alloc(64, (sizeof *w->batch + 63) / 64 * 64);
+    w->next = aligned_alloc(64, (sizeof *w->next + 63) / 64 * 64);
+    w->inner = malloc(sizeof *w->inner);
+    w->hidden = calloc(lights + 1, sizeof *w->hidden);
+  }
+  if (w == NULL || w->batch == NULL || w->next == NULL || w->inner == NULL || w->hidden == NULL) {
+    abbe_light_walk_free(w);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a batch of photons");
+  }
+  size_t faces = 0;
+  for (size_t i = 0; i < geometry->scene->object_count; i++)
+    faces += geometry->scene->object[i].mesh.face_count;
+  w->small = faces < SMALL_SCENE;
+  for (size_t i = 0; i < lights; i++)
+    w->hidden[i] = abbe_lamp_is_hidden(geometry, &geometry->scene->light[i]);
+  memset(w->batch, 0, sizeof *w->batch);
+  memset(w->next, 0, sizeof *w->next);
+  w->inner->count = 0;
+  abbe_ray_prepare(w->batch->ray, PACKETS);
+  abbe_ray_prepare(w->next->ray, PACKETS);
+  *out = w;
+  return ABBE_OK;
+}
+
+void abbe_light_walk_free(abbe_light_walk *walk) {
+  if (walk == NULL) return;
+  free(walk->batch);
+  free(walk->next);
+  free(walk->inner);
+  abbe_ray_record_free(&walk->record);
+  free(walk->hidden);
+  free(walk);
+}
+
+abbe_light_walk_room *abbe_light_walk_get_room(abbe_light_walk *walk) {
+  return &walk->room;
+}
+
+uint64_t abbe_light_walk_rays(const abbe_light_walk *walk) {
+  return walk->rays;
+}
+
+uint64_t abbe_light_walk_lamp_rays(const abbe_light_walk *walk) {
+  return walk->lamp_rays.traced;
+}
+
+void abbe_light_walk_split(abbe_light_walk *walk, unsigned interfaces) {
+  walk->splits = interfaces & ((1u << ABBE_PHOTON_SPLITS) - 1);
+}
+
+void abbe_light_walk_for_map(abbe_light_walk *walk, bool map) {
+  walk->for_map = map;
+}
+
+void abbe_light_walk_watch(abbe_light_walk *walk, abbe_light_walk_stretch take, void *user) {
+  walk->take = take;
+  walk->watcher = user;
+}
+
+void abbe_light_walk_keep(abbe_light_walk *walk, size_t packets) {
+  abbe_ray_record_free(&walk->record);
+  abbe_ray_record_make(packets, &walk->record);
+}
+
+bool abbe_light_walk_replay(abbe_light_walk *w, double *seconds, uint64_t *rays) {
+  return abbe_ray_record_replay(&w->record, w->g->embree, seconds, rays);
+}
+
+/* ---- one bounce of sixteen paths ---- */
+
+/* What becomes of a path at what its ray met. */
+typedef enum path_state {
+  SCATTERS,   /* at an interface */
+  DEPOSITED,  /* on a receiver */
+  MISSED,     /* met nothing any more */
+  MIRRORED,   /* at a mirror */
+  TRAPPED,    /* matched: as long as the renderer follows one, and not out yet */
+  LOST,       /* inside of nothing, or too long */
+  NOT_COUNTED /* never met a refractor, or has no light left */
+} path_state;
+
+/* A packet of paths between their rays of this bounce and those of the next. */
+typedef struct packet {
+  abbe_scatter scatter;
+  abbe_mirroring mirroring;
+  abbe_media_set before[LANES], after[LANES];
+  bool straight[LANES]; /* media of one index: no interface */
+  bool crystal[LANES];  /* on either side */
+  int film[LANES];      /* on the face, or -1 */
+  float passes[LANES];  /* what it does not absorb */
+  uint8_t wave[LANES];  /* that a path goes on as, in a crystal */
+  path_state state[LANES];
+  abbe_hit hit[LANES];
+} packet;
+
+/* A batch in progress: what the photons of one light have in common. */
+typedef struct run {
+  abbe_light_walk *w;
+  const abbe_light *light;
+  abbe_inner_rules rules;
+  bool hidden, parallel;
+  packet packet;
+  size_t hits;
+  abbe_photon_hit *hit;
+  abbe_light_ledger *ledger;
+} run;
+
+/* Numbers that decide for one branch at any share, but for total reflection's. */
+static const float REFLECT = -1, TRANSMIT = 2;
+
+/* What a path meets at a refractor: normals, indices, media. */
+static void meet_interface(const abbe_light_walk *w, const abbe_light_path *s, packet *p,
+                           size_t k) {
+  const abbe_hit *hit = &p->hit[k];
+  const float d[3] = {p->scatter.d[0][k], p->scatter.d[1][k], p->scatter.d[2][k]};
+  const bool entering = abbe_scatter_meet(&p->scatter, k, hit, d);
+  abbe_media_cross(s->inside, hit->surface->index, entering, &p->before[k], &p->after[k]);
+  int from = abbe_media_of(p->before[k]), to = abbe_media_of(p->after[k]);
+  p->film[k] = abbe_media_film(w->media, from, to, hit);
+  p->straight[k] = p->film[k] < 0 && abbe_media_same(w->media, from, to);
+  p->crystal[k] = !p->straight[k] &&
+                  (abbe_media_is_crystal(w->media, from) || abbe_media_is_crystal(w->media, to));
+  p->scatter.eta[k] = p->straight[k] ? 1
+                                     : abbe_media_n(w->media, from, s->step, s->within) /
+                                           abbe_media_n(w->media, to, s->step, s->within);
+}
+
+/* Lane k of a packet of rays that Embree has been through: where the path is, and what becomes of
+ * it there. */
+static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, abbe_light_path *s) {
+  packet *p = &r->packet;
+  const bool first = s->steps == 0;
+  const unsigned id = rays->hit.geomID[k];
+  if (r->w->take != NULL && !first) {
+    const abbe_light_stretch stretch = abbe_light_path_stretch(s, rays, k);
+    r->w->take(r->w->watcher, &stretch);
+  }
+  if (id == RTC_INVALID_GEOMETRY_ID && (first || s->inside != 0)) return first ? NOT_COUNTED : LOST;
+  const bool left = first || abbe_light_path_absorb(&r->rules, r->w->media, s, rays, k, r->ledger);
+  if (id == RTC_INVALID_GEOMETRY_ID) return left ? MISSED : NOT_COUNTED;
+  const abbe_surface *surface = &r->w->g->surface[id];
+  if (first && surface->kind == ABBE_GEOMETRY_RECEIVERS) return NOT_COUNTED;
+  if (surface->kind == ABBE_GEOMETRY_LAMPS) {
+    if (!first && left) r->ledger->absorbed += (double)(s->y * s->flux);
+    return NOT_COUNTED;
+  }
+  abbe_ray_place(rays, k, surface, &p->hit[k]);
+  if (surface->kind == ABBE_GEOMETRY_RECEIVERS) {
+    if (s->inside != 0) r->ledger->contact += (double)(s->y * s->flux);
+    return left ? DEPOSITED : NOT_COUNTED;
+  }
+  if (first) abbe_light_path_begin(&r->w->media->haze, s, r->parallel, rays, k);
+  if (first) r->ledger->reached += (double)(s->y * s->flux);
+  if (surface->kind == ABBE_GEOMETRY_MIRRORS) {
+    if (!left) return NOT_COUNTED;
+    abbe_scatter_meet_mirror(&p->scatter, &p->mirroring, k, &p->hit[k], r->w->mirrors, s->step,
+                             s->within);
+    return MIRRORED;
+  }
+  p->scatter.chance[k] = abbe_light_path_chance(&r->rules, s);
+  bool too_long = ++s->steps >= ABBE_INNER_MAX_STEPS;
+  meet_interface(r->w, s, p, k);
+  return too_long ? LOST : left ? SCATTERS : NOT_COUNTED;
+}
+
+static bool is_split(const abbe_light_walk *w, const abbe_light_path *s) {
+  return s->steps <= ABBE_PHOTON_SPLITS && (w->splits >> (s->steps - 1u) & 1) != 0;
+}
+
+/* What the path carries on the branch that was chosen, or on one of both; false for no light. */
+static bool take_branch(const packet *p, size_t k, bool split, abbe_light_path *s) {
+  const size_t interface = s->steps - 1u;
+  const bool reflects = p->scatter.reflects[k] && !p->straight[k];
+  const float share = p->straight[k] ? 0 : p->scatter.share[k];
+  const float part = reflects ? share : 1 - share;
+  if (!split) {
+    if (interface < ABBE_PHOTON_SPLITS) s->chance[interface] = part;
+    return true;
+  }
+  const bool reflecting = p->scatter.chance[k] < 0;
+  if (reflecting != reflects) return false; /* nothing is mirrored where it goes straight on */
+  s->flux *= part;
+  s->full *= part;
+  return part > 0;
+}
+
+static void leave_solid(run *r);
+
+/* Whether the path goes on through a solid and needs nothing of Embree. */
+static bool stays_in_solid(const abbe_light_walk *w, const abbe_light_path *s) {
+  if (s->inside == 0) return false;
+  if (s->steps < ABBE_PHOTON_SPLITS && w->splits >> s->steps != 0) return false; /* one is split */
+  const int medium = abbe_media_of(s->inside);
+  return abbe_solid_is(&w->g->solid[medium]) && !abbe_media_is_crystal(w->media, medium) &&
+         !abbe_haze_scatters(&w->media->haze, medium);
+}
+
+/* Into the batch of its solid, whose paths leave it first where it is another's. */
+static void enter_solid(run *r, size_t k, const float d[3], const abbe_light_path *s) {
+  inner_batch *b = r->w->inner;
+  const uint32_t refractor = (uint32_t)abbe_media_of(s->inside);
+  if (b->count > 0 && b->refractor != refractor) leave_solid(r);
+  b->refractor = refractor;
+  const abbe_media *m = r->w->media;
+  const float *p = r->packet.hit[k].p;
+  b->path[b->count] = *s;
+  b->inner[b->count++] = (abbe_inner_path){
+      .p = {p[0], p[1], p[2]},
+      .d = {d[0], d[1], d[2]},
+      .eta = abbe_media_n(m, (int)refractor, s->step, s->within),
+      .attenuation = abbe_media_attenuation(m, (int)refractor, s->step, s->within),
+      .flux = s->flux,
+      .full = s->full,
+      .y = s->y,
+      .carried = s->carried,
+      .id = s->id,
+      .steps = s->steps,
+      .inner = s->inner};
+}
+
+/* The path after the interface, into the next batch; what matched physics does not follow ends. */
+static path_state go_on(run *r, size_t k, abbe_light_path *s) {
+  const packet *p = &r->packet;
+  ray_batch *next = r->w->next;
+  float o[3], d[3];
+  for (int i = 0; i < 3; i++) {
+    o[i] = p->scatter.from[i][k];
+    d[i] = p->straight[k] ? p->scatter.d[i][k] : p->scatter.out[i][k];
+  }
+  bool reflects = p->scatter.reflects[k] && !p->straight[k];
+  if (!p->straight[k] && !abbe_light_path_is_followed(&r->rules, s, reflects, p->scatter.share[k]))
+    return TRAPPED;
+  s->inside = reflects ? p->before[k] : p->after[k];
+  if (p->crystal[k]) s->wave = p->wave[k];
+  if (stays_in_solid(r->w, s)) {
+    enter_solid(r, k, d, s);
+    return SCATTERS;
+  }
+  abbe_ray_put(next->ray, next->count, o, d);
+  next->path[next->count++] = *s;
+  return SCATTERS;
+}
+
+/* A mirror absorbs what it does not reflect; the path goes into the next batch. */
+static path_state leave_mirror(run *r, size_t k, const abbe_light_path *path) {
+  packet *p = &r->packet;
+  abbe_light_path_roughen(&r->rules, r->w->mirrors, &p->hit[k], path, &p->scatter, &p->mirroring,
+                          k);
+  ray_batch *next = r->w->next;
+  abbe_light_path *s = &next->path[next->count];
+  const float share = p->mirroring.share[k];
+  *s = *path;
+  r->ledger->absorbed += (double)(s->y * s->flux * (1 - share));
+  s->flux *= share;
+  s->carried *= share;
+  if (++s->steps >= ABBE_INNER_MAX_STEPS) return LOST;
+  if (!(s->flux > 0) || !abbe_light_path_survives(&r->rules, s, r->ledger)) return NOT_COUNTED;
+  float o[3], d[3];
+  for (int i = 0; i < 3; i++) {
+    o[i] = p->scatter.from[i][k];
+    d[i] = p->scatter.out[i][k];
+  }
+  abbe_ray_put(next->ray, next->count++, o, d);
+  return MIRRORED;
+}
+
+static void deposit(run *r, size_t k, const abbe_light_path *s) {
+  const abbe_hit *hit = &r->packet.hit[k];
+  abbe_photon_hit *out = &r->hit[r->hits++];
+  const double flux = (double)(s->y * s->flux);
+  *out = abbe_light_path_hit(s, hit, &r->packet.scatter, k);
+  r->ledger->deposited += flux;
+  if (r->hidden)
+    abbe_lamp_rays_add(&r->w->lamp_rays, r->w->g, r->light, hit, out, flux, r->ledger,
+                       &r->w->record);
+}
+
+static void end_path(run *r, size_t k, path_state state, const abbe_light_path *s) {
+  const double flux = (double)(s->y * s->flux);
+  if (state == DEPOSITED) deposit(r, k, s);
+  if (state == MISSED) r->ledger->missed += flux;
+  if (state == TRAPPED) r->ledger->trapped += flux;
+  if (state == LOST) r->ledger->lost += flux;
+}
+
+/* The paths of a packet on the branches that its lanes have taken, or with `second` those of split
+ * paths on the other. */
+static void advance(run *r, const abbe_light_path *paths, size_t count, bool second) {
+  for (size_t k = 0; k < count; k++) {
+    path_state state = r->packet.state[k];
+    if (state != SCATTERS) {
+      if (second || state == NOT_COUNTED) continue;
+      if (state != MIRRORED)
+        end_path(r, k, state, &paths[k]);
+      else if (leave_mirror(r, k, &paths[k]) == LOST)
+        end_path(r, k, LOST, &r->w->next->path[r->w->next->count]);
+      continue;
+    }
+    abbe_light_path s = paths[k];
+    const bool split = is_split(r->w, &s);
+    if (r->packet.film[k] >= 0 &&
+        !abbe_light_path_pass(&r->rules, r->packet.passes[k], split, second, &s, r->ledger))
+      continue;
+    if ((second && !split) || !take_branch(&r->packet, k, split, &s)) continue;
+    state = go_on(r, k, &s);
+    if (state != SCATTERS) end_path(r, k, state, &s);
+  }
+}
+
+static void scatter_packet(run *r, const abbe_light_path *paths, size_t count) {
+  packet *p = &r->packet;
+  const abbe_media *m = r->w->media;
+  abbe_scatter_packet(&p->scatter);
+  for (size_t k = 0; (m->crystal != NULL || m->films.count > 0) && k < count; k++) {
+    const int from = abbe_media_of(p->before[k]), to = abbe_media_of(p->after[k]);
+    abbe_wave_face face = {from, to, p->film[k], p->after[k] > p->before[k], .wave = paths[k].wave};
+    if (p->state[k] == SCATTERS && p->crystal[k])
+      p->wave[k] =
+          abbe_light_path_bend(&r->rules, m, &paths[k], &face, &p->scatter, k, &p->passes[k]);
+    else if (p->state[k] == SCATTERS && p->film[k] >= 0)
+      p->passes[k] = abbe_light_path_coat(m, &paths[k], &face, &p->scatter, k);
+  }
+}
+
+/* Each lane's path goes on as its number decides; one that is split is reflected, and then
+ * transmitted. */
+static void scatter(run *r, const abbe_light_path *paths, size_t count) {
+  abbe_scatter *s = &r->packet.scatter;
+  bool splits[LANES], any = false, scatters = false, mirrors = false;
+  for (size_t k = 0; k < count; k++) {
+    splits[k] = r->packet.state[k] == SCATTERS && is_split(r->w, &paths[k]);
+    if (splits[k]) s->chance[k] = REFLECT;
+    scatters = scatters || r->packet.state[k] == SCATTERS;
+    mirrors = mirrors || r->packet.state[k] == MIRRORED;
+    any = any || splits[k];
+  }
+  if (mirrors) abbe_scatter_turn(s);
+  if (scatters || mirrors) scatter_packet(r, paths, count);
+  if (mirrors) abbe_scatter_mirror(s, &r->packet.mirroring);
+  advance(r, paths, count, false);
+  if (!any) return;
+  for (size_t k = 0; k < count; k++)
+    if (splits[k]) s->chance[k] = TRANSMIT;
+  scatter_packet(r, paths, count);
+  advance(r, paths, count, true);
+}
+
+/* The paths of a solid's batch to where they leave it, and on. */
+static void leave_solid(run *r) {
+  abbe_light_walk *w = r->w;
+  inner_batch *b = w->inner;
+  abbe_inner_walk(&w->g->solid[b->refractor], &r->rules, b->inner, b->count, r->ledger, &w->record,
+                  &w->rays);
+  for (size_t i = 0; i < b->count; i++) {
+    static const path_state states[] = {[ABBE_INNER_LEFT] = SCATTERS,
+                                        [ABBE_INNER_GONE] = NOT_COUNTED,
+                                        [ABBE_INNER_TRAPPED] = TRAPPED,
+                                        [ABBE_INNER_LOST] = LOST};
+    const abbe_inner_path *from = &b->inner[i];
+    abbe_light_path *s = &b->path[i];
+    if (s->steps == 1) s->chance[1] = from->second_chance;
+    s->flux = from->flux;
+    s->carried = from->carried;
+    s->inner = (uint16_t)from->inner;
+    s->steps = (uint16_t)from->steps;
+    s->inside = 0;
+    if (from->end == ABBE_INNER_LEFT) {
+      abbe_ray_put(w->next->ray, w->next->count, from->p, from->d);
+      w->next->path[w->next->count++] = *s;
+    } else {
+      end_path(r, 0, states[from->end], s);
+    }
+  }
+  b->count = 0;
+}
+
+/* ---- the batch ---- */
+
+static void begin(ray_batch *b, const abbe_photon *photon, size_t count) {
+  b->count = 0;
+  for (size_t i = 0; i < count; i++) {
+    const abbe_photon *p = &photon[i];
+    if (!(p->flux > 0)) continue;
+    abbe_ray_put(b->ray, b->count, p->o, p->d);
+    abbe_light_path_start(p, &b->path[b->count++]);
+  }
+}
+
+/* Traces the rays of a bounce and puts those of the next into w->next. */
+static void follow(run *r, size_t bounce) {
+  abbe_light_walk *w = r->w;
+  ray_batch *b = w->batch;
+  abbe_ray_batch_trace(b->ray, b->count, w->small || bounce < COHERENT_BOUNCES, w->g->embree,
+                       &w->record);
+  w->rays += b->count;
+  w->next->count = 0;
+  for (size_t first = 0; first < b->count; first += LANES) {
+    const size_t used = b->count - first < LANES ? b->count - first : LANES;
+    abbe_light_path *paths = &b->path[first];
+    const struct RTCRayHit16 *rays = &b->ray[first / LANES];
+    abbe_scatter *s = &r->packet.scatter;
+    memcpy(s->d[0], rays->ray.dir_x, sizeof s->d[0]);
+    memcpy(s->d[1], rays->ray.dir_y, sizeof s->d[1]);
+    memcpy(s->d[2], rays->ray.dir_z, sizeof s->d[2]);
+    for (size_t k = 0; k < used; k++) r->packet.state[k] = read_hit(r, rays, k, &paths[k]);
+    scatter(r, paths, used);
+  }
+  leave_solid(r);
+}
+
+size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t pass,
+                           const abbe_photon *photon, size_t count, abbe_photon_hit *hit,
+                           abbe_light_ledger *ledger) {
+  run r = {.w = w,
+           .light = light,
+           .rules = {.seed = w->seed, .pass = pass, .physics = w->physics},
+           .hidden = w->for_map && light != NULL && w->hidden[light - w->g->scene->light],
+           .parallel = light == NULL || light->kind == ABBE_LIGHT_DIRECTIONAL,
+           .hit = hit,
+           .ledger = ledger};
+  abbe_random_bits(0x73686966, 0, pass, w->seed, r.rules.shift);
+  begin(w->batch, photon, count);
+  for (size_t bounce = 0; w->batch->count > 0; bounce++) {
+    follow(&r, bounce);
+    ray_batch *done = w->batch;
+    w->batch = w->next;
+    w->next = done;
+  }
+  abbe_lamp_rays_trace(&w->lamp_rays, w->g, ledger, &w->record);
+  return r.hits;
+}
