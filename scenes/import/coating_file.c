@@ -59,11 +59,11 @@ static abbe_result read_layer(const abbe_object_reading *r, abbe_yaml_node node,
   if (quarter_nm > 0) layer.nm = 0;
   result = abbe_coating_add(out, &layer, error);
   abbe_film_layer at[ABBE_FILM_MOST_LAYERS];
+  if (result == ABBE_OK && quarter_nm > 0) result = abbe_coating_at(out, quarter_nm, at, error);
   if (result == ABBE_OK && quarter_nm > 0) {
-    result = abbe_coating_at(out, quarter_nm, at, error);
     layer.nm = quarters * quarter_nm / (4 * at[out->count - 1].n);
     out->layer[out->count - 1].nm = layer.nm;
-    if (result == ABBE_OK && !(layer.nm <= ABBE_FILM_MOST_NM))
+    if (!(layer.nm <= ABBE_FILM_MOST_NM))
       return abbe_yaml_fail(r->yaml, node, error, "a layer of %g nm is thicker than %d nm",
                             layer.nm, ABBE_FILM_MOST_NM);
   }

@@ -117,6 +117,8 @@ TEST(coatings_that_cannot_be_are_refused) {
       {ABBE_SCHEMA, BOX "{layers: [[1.38, -1]]}", "thickness"},
       {ABBE_SCHEMA, BOX "{layers: [[1.38, 5001]]}", "5000"},
       {ABBE_SCHEMA, BOX "{layers: [[1.38, 99]], quarter: 550}", "is thicker than 5000 nm"},
+      {ABBE_OUT_OF_RANGE, BOX "{layers: [[silver, 1]], quarter: 100}",
+       "scene.yaml:5: silver has no n and k at 100 nm"},
       {ABBE_SCHEMA, BOX "{layers: [[[1.38, -0.1], 20]]}", "k of a layer"},
       {ABBE_SCHEMA, BOX "{layers: [[0, 20]]}", "is above 0"},
       {ABBE_SCHEMA, BOX "{layers: [[1.38]]}", "a layer is [what, nm]"},
