@@ -4,9 +4,9 @@
 #include "cli/options/spectral_options.h"
 
 #include "base/number.h"
-#include "colorimetry/screen/lut.h"
 #include "colorimetry/image/image.h"
 #include "colorimetry/plot/false_colours.h"
+#include "colorimetry/screen/lut.h"
 #include "colorimetry/spectral_picture/relight.h"
 
 #include <argp.h>
@@ -194,12 +194,15 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case ARGP_KEY_END:
     if (r->list) return 0;
     if (r->out != NULL && abbe_lut_is_meant(r->out)) {
-      if (r->in != NULL || r->layer != NULL || r->spectral.given || r->screen.exposed)
-        argp_error(state, "a table is of a view, not of a picture: leave out %s",
-                   r->in != NULL       ? r->in
-                   : r->layer != NULL  ? "--layer"
-                   : r->screen.exposed ? "--exposure auto"
-                                       : "the options of spectral pictures");
+      const char *picture = r->in != NULL             ? r->in
+                            : r->layer != NULL        ? "--layer"
+                            : r->screen.exposed       ? "--exposure auto"
+                            : r->screen.bits != 0     ? "--bits"
+                            : r->screen.glare_deg > 0 ? "--glare"
+                            : r->spectral.given       ? "the options of spectral pictures"
+                                                      : NULL;
+      if (picture != NULL)
+        argp_error(state, "a table is of a view, not of a picture: leave out %s", picture);
       return 0;
     }
     if (r->nodes != 0 || r->low != r->high)

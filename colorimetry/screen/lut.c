@@ -41,14 +41,19 @@ static abbe_result make_nodes(const abbe_lut_desc *desc, const shape *s, abbe_im
   return result == ABBE_OK ? abbe_display_apply(desc->display, out, error) : result;
 }
 
-/* To seven places, as the file's numbers are; what the locale says does not matter. */
+/* In full, whatever the locale says. */
 static void put(FILE *out, double value, const char *after) {
   char text[ABBE_NUMBER_TEXT_SIZE];
-  fprintf(out, "%s%s", abbe_number_text(abbe_number_tidy(round(value * 1e7) / 1e7), text), after);
+  fprintf(out, "%s%s", abbe_number_text(value, text), after);
+}
+
+/* The seven places of a table's entries. */
+static double rounded(double value) {
+  return abbe_number_tidy(round(value * 1e7) / 1e7);
 }
 
 static void put_colour(FILE *out, const float v[3]) {
-  for (int c = 0; c < 3; c++) put(out, (double)v[c], c < 2 ? " " : "\n");
+  for (int c = 0; c < 3; c++) put(out, rounded((double)v[c]), c < 2 ? " " : "\n");
 }
 
 static void write_cube(const abbe_lut_desc *desc, const shape *s, const abbe_image *nodes,
@@ -64,8 +69,7 @@ static void write_cube(const abbe_lut_desc *desc, const shape *s, const abbe_ima
   put(out, most, "\n");
   fprintf(out, "LUT_3D_SIZE %zu\nLUT_3D_INPUT_RANGE 0 1\n", desc->nodes);
   for (int i = 0; i < SHAPER; i++) {
-    const char *y = abbe_number_text(
-        abbe_number_tidy(round(shaped(s, most * i / (SHAPER - 1)) * 1e7) / 1e7), text);
+    const char *y = abbe_number_text(rounded(shaped(s, most * i / (SHAPER - 1))), text);
     fprintf(out, "%s %s %s\n", y, y, y);
   }
   for (size_t i = 0; i < nodes->width * nodes->height; i++) put_colour(out, nodes->data + 3 * i);

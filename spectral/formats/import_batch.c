@@ -66,7 +66,7 @@ static abbe_result add(abbe_import_files *files, char *path, bool found, abbe_er
 }
 
 static bool may_hold_materials(const char *name) {
-  static const char *const endings[] = {".agf", ".yml", ".yaml", ".csv", ".sqlite"};
+  static const char *const endings[] = {".agf", ".yml", ".yaml", ".csv", ".sqlite", ".mtlx"};
   const char *dot = strrchr(name, '.');
   for (size_t i = 0; dot != NULL && i < sizeof endings / sizeof endings[0]; i++)
     if (strcasecmp(dot, endings[i]) == 0) return true;
@@ -254,7 +254,7 @@ static abbe_result take_files(runner *r, abbe_error *error) {
   if (r->used > 0) return ABBE_OK;
   if (r->files.count == 0)
     return abbe_error_set(error, ABBE_NOT_FOUND,
-                          "%s: holds no file that ends in .agf, .yml, .yaml, .csv or .sqlite",
+                          "%s: holds no file that ends in .agf, .yml, .yaml, .csv, .sqlite or .mtlx",
                           r->batch->path[0]);
   if (r->files.count == 1) return abbe_error_set(error, r->first.code, "%s", r->first.text);
   return abbe_error_set(error, r->first.code, "none of the %zu files can be used; the first: %s",

@@ -27,6 +27,12 @@ static abbe_import_format marked(const char *line, size_t length) {
   if (begins(line, length, "NM ") || begins(line, length, "NM\t")) return ABBE_IMPORT_AGF;
   if (begins(line, length, "DATA:")) return ABBE_IMPORT_RII;
   if (begins(line, length, "materials:")) return ABBE_IMPORT_YAML;
+  if (begins(line, length, "<?xml")) { /* what follows its end in the same line */
+    const char *end = memchr(line, '>', length);
+    const size_t used = end != NULL ? (size_t)(end + 1 - line) : length;
+    line += used;
+    length -= used;
+  }
   if (begins(line, length, "<materialx")) return ABBE_IMPORT_MTLX;
   return ABBE_IMPORT_AUTO;
 }

@@ -110,7 +110,7 @@ typedef struct abbe_import_batch {
 
 /* Adds what the files hold to the table, which may be zeroed; report may be NULL. From a folder
  * come, in the order of their names and with the folders in it, those files that end in .agf, .yml,
- * .yaml, .csv or .sqlite and hold materials; hidden ones and links to folders do not.
+ * .yaml, .csv, .sqlite or .mtlx and hold materials; hidden ones and links to folders do not.
  *
  * Where several files have a material of one name, each is called FOLDER-NAME or FILE-NAME, after
  * the part of its path by which they differ, with a note of kind RENAMED; where nothing differs,

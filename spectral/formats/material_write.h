@@ -70,7 +70,7 @@ abbe_result abbe_rii_write(const abbe_material *material, FILE *to, abbe_report 
  *
  * It has n_d, V_d and, of what absorbs, a colour at a depth in metres [OpenPBR]; what that loses is
  * noted, with the largest error of n. What has no n_d and V_d in its range, and a conductor, is
- * noted as SKIPPED. ABBE_IO where the stream fails. */
+ * noted as SKIPPED. ABBE_IO where the stream fails, ABBE_NO_MEMORY. */
 abbe_result abbe_mtlx_write(const abbe_material_table *table, FILE *to, abbe_report *report,
                             abbe_error *error);
 

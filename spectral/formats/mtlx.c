@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum { MOST_NAME = 120, MOST_DEPTH = 64 };
 
@@ -59,7 +60,7 @@ static const char *attribute(const char **attributes, const char *name) {
   return NULL;
 }
 
-/* Three numbers, or one for all. */
+/* So many numbers, and nothing else. */
 static bool read_numbers(const char *text, double *out, size_t count) {
   for (size_t i = 0; i < count; i++) {
     text += strspn(text, " \t\n,");
@@ -108,19 +109,35 @@ static void add_link(reading *r, const char *shader) {
   take_name(r->link[r->links++].material, r->material);
 }
 
+/* The shader takes the name where a table could hold it; else it keeps its own. */
+static void take_material_name(const reading *r, abbe_material *m, const char *name) {
+  char *own = m->name, *other = strdup(name);
+  abbe_error why = {0};
+  if (other == NULL) return;
+  for (size_t i = 0; i < r->out->count; i++)
+    if (strcasecmp(r->out->material[i].name, other) == 0)
+      snprintf(why.text, sizeof why.text, "another has that name");
+  m->name = other;
+  if (why.text[0] == '\0') abbe_material_check(m, &why);
+  if (why.text[0] == '\0') {
+    free(own);
+    return;
+  }
+  m->name = own;
+  free(other);
+  abbe_report_add(r->report, ABBE_NOTE_CHANGED, m->line, own,
+                  "its surfacematerial's name '%.60s' is not taken: %.200s", name, why.text);
+}
+
 /* People name the surfacematerial; what it shows is often named after its kind. */
-static abbe_result rename_all(const reading *r) {
+static void rename_all(const reading *r) {
   for (size_t i = 0; i < r->out->count; i++)
     for (size_t k = 0; k < r->links; k++) {
       abbe_material *m = &r->out->material[i];
       if (strcmp(r->link[k].shader, m->name) != 0) continue;
-      char *name = strdup(r->link[k].material);
-      if (name == NULL) return abbe_error_set(r->error, ABBE_NO_MEMORY, "%s: no memory", r->path);
-      free(m->name);
-      m->name = name;
+      if (strcmp(r->link[k].material, m->name) != 0) take_material_name(r, m, r->link[k].material);
       break;
     }
-  return ABBE_OK;
 }
 
 static void begin(void *user, const char *element, const char **attributes) {
@@ -160,7 +177,7 @@ static double dispersion_of(const reading *r) {
   return is_abbe_number ? 20 * r->scale / r->dispersion : r->dispersion;
 }
 
-static abbe_result absorb(const reading *r, abbe_material *m) {
+static abbe_result absorb(const reading *r, abbe_material *m, abbe_error *error) {
   double colour[3];
   bool clear = true;
   for (int i = 0; i < 3; i++) {
@@ -175,7 +192,7 @@ static abbe_result absorb(const reading *r, abbe_material *m) {
   }
   abbe_report_add(r->report, ABBE_NOTE_ASSUMED, r->line, r->name,
                   "the file's unit of length is a metre");
-  return abbe_absorption_spectrum_of_colour(colour, r->distance, &m->attenuation, r->error);
+  return abbe_absorption_spectrum_of_colour(colour, r->distance, &m->attenuation, error);
 }
 
 static abbe_result take(reading *r) {
@@ -196,13 +213,18 @@ static abbe_result take(reading *r) {
   snprintf(source, sizeof source, "%.200s, %s of MaterialX", r->path, r->model->element);
   m.name = strdup(r->name);
   m.source = strdup(source);
-  abbe_result result = m.name && m.source
-                           ? absorb(r, &m)
-                           : abbe_error_set(r->error, ABBE_NO_MEMORY, "%s: no memory", r->path);
-  if (result == ABBE_OK && abbe_material_check(&m, &why) != ABBE_OK)
-    abbe_report_add(r->report, ABBE_NOTE_SKIPPED, r->line, NULL, "%s", why.text);
-  else if (result == ABBE_OK)
+  if (m.name == NULL || m.source == NULL) {
+    abbe_material_free(&m);
+    return abbe_error_set(r->error, ABBE_NO_MEMORY, "%s: no memory", r->path);
+  }
+  abbe_result result = absorb(r, &m, &why);
+  if (result == ABBE_OK) result = abbe_material_check(&m, &why);
+  if (result == ABBE_OK) {
     result = abbe_material_table_append(r->out, &m, r->error);
+  } else if (result != ABBE_NO_MEMORY) {
+    abbe_report_add(r->report, ABBE_NOTE_SKIPPED, r->line, r->name, "%s", why.text);
+    result = ABBE_OK;
+  }
   abbe_material_free(&m);
   return result;
 }
@@ -229,7 +251,7 @@ abbe_result abbe_mtlx_parse(const char *text, size_t size, const char *path,
     r.result = abbe_error_set(error, ABBE_PARSE, "%s:%zu: %s", path, abbe_xml_line(r.parser),
                               XML_ErrorString(XML_GetErrorCode(r.parser)));
   XML_ParserFree(r.parser);
-  if (r.result == ABBE_OK) r.result = rename_all(&r);
+  if (r.result == ABBE_OK) rename_all(&r);
   free(r.link);
   if (r.result == ABBE_OK && r.found == 0)
     r.result =

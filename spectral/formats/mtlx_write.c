@@ -7,6 +7,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_NAME = 120 };
@@ -24,17 +25,21 @@ static void put_text(FILE *to, const char *text) {
       fputc((unsigned char)*text < 0x20 ? ' ' : *text, to);
 }
 
-/* MaterialX's names are of letters, digits and '_'; the table has each only once, this need not. */
-static void make_name(const char *name, size_t line, char out[MOST_NAME]) {
+typedef char made_name[MOST_NAME];
+
+/* MaterialX's names are of letters, digits and '_', each only once: a number is added to the
+ * second. */
+static void make_name(const char *text, made_name *made, size_t count) {
+  char *out = made[count];
   size_t length = 0;
-  bool changed = false;
-  for (; *name != '\0' && length < MOST_NAME - 24; name++) {
-    const bool fits =
-        (isalnum((unsigned char)*name) && (unsigned char)*name < 0x80) || *name == '_';
-    changed = changed || (!fits && *name != '-');
-    out[length++] = fits ? *name : '_';
-  }
-  snprintf(out + length, 24, changed || *name != '\0' ? "_%zu" : "", line);
+  for (; *text != '\0' && length < MOST_NAME - 24; text++)
+    out[length++] = isalnum((unsigned char)*text) && (unsigned char)*text < 0x80 ? *text : '_';
+  out[length] = '\0';
+  for (size_t i = 0, again = 2; i < count; i++)
+    if (strcmp(made[i], out) == 0) {
+      snprintf(out + length, 24, "_%zu", again++);
+      i = (size_t)-1; /* from the start */
+    }
 }
 
 /* The distance where the darkest of the three shares is 1 / e, m, and the shares; 0: clear. */
@@ -61,11 +66,10 @@ static double cauchy_error(const abbe_material *m, double n_d, double v_d) {
   return most;
 }
 
-static void write_shader(FILE *to, const abbe_material *m, const abbe_dispersion_numbers *d) {
-  char name[MOST_NAME];
+static void write_shader(FILE *to, const abbe_material *m, const abbe_dispersion_numbers *d,
+                         const char *name) {
   double colour[3];
   const double distance = volume_colour(m, colour);
-  make_name(m->name, m->line, name);
   fprintf(to, "  <open_pbr_surface name=\"SR_%s\" type=\"surfaceshader\" doc=\"", name);
   put_text(to, m->source);
   fputs("\">\n    <input name=\"specular_roughness\" type=\"float\" value=\"0\"/>\n"
@@ -92,6 +96,9 @@ static void write_shader(FILE *to, const abbe_material *m, const abbe_dispersion
 
 abbe_result abbe_mtlx_write(const abbe_material_table *table, FILE *to, abbe_report *report,
                             abbe_error *error) {
+  made_name *made = calloc(table->count + 1, sizeof *made);
+  size_t count = 0;
+  if (made == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for names");
   fputs("<?xml version=\"1.0\"?>\n<!-- Written by Abbe. Lengths in metres. -->\n"
         "<materialx version=\"1.39\">\n",
         to);
@@ -116,8 +123,10 @@ abbe_result abbe_mtlx_write(const abbe_material_table *table, FILE *to, abbe_rep
         "off by up to %.2g%s",
         d.n_d, d.v_d, cauchy_error(m, d.n_d, d.v_d),
         m->attenuation != NULL ? "; absorption is three numbers" : "");
-    write_shader(to, m, &d);
+    make_name(m->name, made, count);
+    write_shader(to, m, &d, made[count++]);
   }
+  free(made);
   fputs("</materialx>\n", to);
   if (fflush(to) == 0 && !ferror(to)) return ABBE_OK;
   return abbe_error_set(error, ABBE_IO, "the materials could not be written");

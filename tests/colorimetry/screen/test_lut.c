@@ -72,6 +72,19 @@ TEST(twice_the_nodes_leave_a_quarter_of_the_error) {
   unlink(path_of(".clf"));
 }
 
+/* The shaper's range has all digits, however dark the table is. */
+TEST(a_dark_table_is_right_too) {
+  abbe_display *display = NULL;
+  OK(abbe_display_make(&(abbe_display_desc){.view = "Looking", .exposure = 25}, &display, &error));
+  abbe_lut_error off;
+  const abbe_lut_desc desc = {
+      .display = display, .input = "a", .output = "b", .nodes = 33, .low = -32, .high = -20};
+  OK(abbe_lut_write(&desc, path_of(".cube"), &off, &error));
+  assert_true(off.mean < 0.01 && off.most < 0.1);
+  abbe_display_free(display);
+  unlink(path_of(".cube"));
+}
+
 TEST(a_file_says_what_it_is_for) {
   abbe_display *display = make_display("Plain");
   for (int e = 0; e < 2; e++) {

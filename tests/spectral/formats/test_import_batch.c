@@ -140,7 +140,7 @@ TEST(nothing_at_all_is_a_failure) {
   const char *const none[] = {below("empty")}, *const typo[] = {one[0], below("c.agf")};
   REFUSED(ABBE_SCHEMA, "a.yml:2: holds no index, only k", run(one, 1, NULL, &error));
   REFUSED(ABBE_SCHEMA, "none of the 2 files can be used; the first: ", run(two, 2, NULL, &error));
-  REFUSED(ABBE_NOT_FOUND, "holds no file that ends in .agf, .yml, .yaml, .csv or .sqlite",
+  REFUSED(ABBE_NOT_FOUND, "holds no file that ends in .agf, .yml, .yaml, .csv, .sqlite or .mtlx",
           run(none, 1, NULL, &error));
   REFUSED(ABBE_IO, "c.agf: cannot be opened", run(typo, 2, NULL, &error));
   assert_int_equal(report.count, 0); /* it is seen before anything is read */

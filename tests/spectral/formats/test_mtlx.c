@@ -104,6 +104,32 @@ TEST(what_is_written_is_read_again) {
   }
 }
 
+/* Names that differ by what MaterialX does not take are two; a name that is taken or none is left.
+ */
+TEST(no_material_is_lost_by_its_name) {
+  abbe_material some[2] = {*find_material(&shipped, "n-bk7"), *find_material(&shipped, "k5")};
+  some[0].name = (char[]){"a-b"};
+  some[1].name = (char[]){"a_b"};
+  const abbe_material_table written = {.count = 2, .material = some};
+  char *text = NULL;
+  size_t size = 0;
+  FILE *to = open_memstream(&text, &size);
+  OK(abbe_mtlx_write(&written, to, &report, &error));
+  fclose(to);
+  OK(import(text, &error));
+  free(text);
+  assert_int_equal(table.count, 2);
+  assert_string_equal(table.material[1].name, "a_b_2");
+  OK(import("<?xml version=\"1.0\"?><materialx version=\"1.39\"><gltf_pbr name=\"SR_a\">" INPUT(
+                "transmission", "1") "</gltf_pbr><gltf_pbr name=\"M\">" INPUT("transmission", "1")
+                INPUT("ior", "1.7") "</gltf_pbr><surfacematerial name=\"M\"><input name=\"s\" "
+                                    "nodename=\"SR_a\"/></surfacematerial></materialx>",
+            &error));
+  assert_int_equal(table.count, 2);
+  assert_string_equal(table.material[0].name, "a");
+  assert_non_null(strstr(report.note[0].text, "another has that name"));
+}
+
 TEST(what_cannot_be_used_is_said) {
   const struct {
     const char *text, *note;
@@ -116,12 +142,17 @@ TEST(what_cannot_be_used_is_said) {
                                INPUT("ior", "0.5") "</gltf_pbr>"),
                   "is not an index of refraction"},
                  {DOCUMENT("<gltf_pbr name=\"s\">" INPUT("transmission", "1")
+                               INPUT("attenuation_color", "1, 0.5, 1")
+                                   INPUT("attenuation_distance", "1e-320") "</gltf_pbr>"),
+                  "is not finite"},
+                 {DOCUMENT("<gltf_pbr name=\"s\">" INPUT("transmission", "1")
                                INPUT("attenuation_color", "1, 0, 0") "</gltf_pbr>"),
                   "a tint of its surface"}};
   for (size_t i = 0; i < sizeof skipped / sizeof *skipped; i++) {
     OK(import(skipped[i].text, &error));
-    assert_int_equal(table.count, i == 3);
-    assert_non_null(strstr(report.note[0].text, skipped[i].note));
+    assert_int_equal(table.count, i == 4);
+    const abbe_note *last = &report.note[report.count - 1];
+    assert_non_null(strstr(last->text, skipped[i].note));
   }
   REFUSED(ABBE_SCHEMA, "holds none of", import(DOCUMENT("<nodedef/>"), &error));
   REFUSED(ABBE_PARSE, "a.mtlx:3: mismatched tag", import(DOCUMENT("<gltf_pbr></a>"), &error));
