@@ -183,6 +183,42 @@ TEST(violet_is_bent_more_than_red) {
     assert_true(mean_height(&l, sample) > mean_height(&l, sample - 1) + 1e-3);
 }
 
+static void sum_flux(const abbe_renderer_hits *l, size_t sample, double *flux, size_t *hits) {
+  *flux = *hits = 0;
+  for (size_t path = 0; path < l->count * l->slots; path++) {
+    const size_t i = path * l->samples + sample;
+    *flux += (double)l->at[4 * i + 3];
+    *hits += l->path[i] != 0;
+    for (int k = 0; k < 4 && l->path[i] == 0; k++) assert_true(l->at[4 * i + k] == 0);
+  }
+}
+
+/* 70 wavelengths are more than a batch takes, and no multiple of it: the last batch holds what a
+ * full one has of them, and nothing of the batch before it. */
+TEST(a_last_batch_holds_its_own_wavelengths_alone) {
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
+  look_aside(&scene);
+  abbe_render_desc desc = small_frame;
+  desc.wavelengths = 70;
+  desc.fill = ABBE_FILL_NONE;
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+  abbe_renderer_hits whole, last;
+  OK(abbe_renderer_read_hits(renderer, 0, 6, NULL, NULL, &whole, &error));
+  assert_int_equal(whole.samples, 64);
+  OK(abbe_renderer_read_hits(renderer, 0, 64, NULL, NULL, &last, &error));
+  for (size_t sample = 0; sample < last.samples; sample++) {
+    double flux, expected = 0;
+    size_t hits, wanted = 0;
+    sum_flux(&last, sample, &flux, &hits);
+    if (sample < 6) sum_flux(&whole, 58 + sample, &expected, &wanted);
+    assert_int_equal(hits, wanted);
+    assert_near(flux, expected, 1e-9 * expected);
+    assert_true((hits > 0) == (sample < 6));
+  }
+  abbe_renderer_hits_free(&whole);
+  abbe_renderer_hits_free(&last);
+}
+
 /* The shipped prism's spectrum on its wall runs from violet, deviated most, to red. */
 TEST(the_shipped_prism_makes_a_spectrum) {
   OWNED(abbe_scene, scene) = shipped_scene("prism");
