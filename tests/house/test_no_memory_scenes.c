@@ -182,8 +182,8 @@ static abbe_result meshes(abbe_error *error) {
 
 /* A box with slivers, a hole and turned faces, so that all steps of fixing have work. */
 static abbe_result fix(abbe_error *error) {
-  static const char *const names[] = {"box_open",   "box_turned", "sliver",  "two_shells",
-                                      "degenerate", "crossing",   "doubled", "finned"};
+  static const char *const names[] = {"box_open",   "box_turned", "sliver", "two_shells",
+                                      "degenerate", "crossing",   "doubled"};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof names / sizeof *names && result == ABBE_OK; i++) {
     static char path[512];
