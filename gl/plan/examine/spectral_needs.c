@@ -6,6 +6,7 @@
 #include "colorimetry/weights.h"
 #include "spectral/biaxial.h"
 #include "spectral/optics.h"
+#include "spectral/uniaxial.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -149,6 +150,20 @@ static void note_biaxial(const abbe_object *object, double low, double high, abb
       object->axis[2], n[1] - n[0], n[2] - n[1]);
 }
 
+/* A wave's field and its displacement are furthest apart between the axes of the extreme indices,
+ * whatever the third is, and so are its ray and its normal. */
+static void note_double_image(const abbe_material *m, double lambda_nm, abbe_plan *plan) {
+  double n[3];
+  if (!abbe_material_is_crystal(m)) return;
+  for (int axis = 0; axis < 3; axis++)
+    if (abbe_material_n_along(m, axis, lambda_nm, &n[axis], NULL) != ABBE_OK) return;
+  const double most = abbe_uniaxial_walk_off(n[0], n[2], cos(atan(n[2] / n[0])));
+  abbe_plan_note(plan,
+                 "%s: double image: largest walk-off %.3f degrees, which moves an image by %.3f mm "
+                 "per cm",
+                 m->name, most * 180 / ABBE_PI, 10 * tan(most));
+}
+
 /* Two of three indices that are alike, and axes that had to be turned. */
 static void note_axes(const abbe_object *object, double lambda_nm, abbe_plan *plan) {
   double n[3];
@@ -213,6 +228,7 @@ abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_mate
   for (size_t i = 0; i < plan->refractor_count && !noted; i++)
     noted = scene->object[plan->refractor_object[i]].material == material;
   if (!noted) note_birefringence(material, 0.5 * (min + max), plan);
+  if (!noted) note_double_image(material, 0.5 * (min + max), plan);
   if (!noted) note_pleochroism(material, plan);
   note_object(scene, material, plan);
   if (outside && !noted)
