@@ -13,13 +13,30 @@ double abbe_glare_spread(double theta_deg) {
 }
 
 /* A picture and its mirror images, side by side and above each other: wide x high complex
- * numbers. */
+ * numbers. A side is twice the picture's; where that one's transform is slow it is three times or
+ * more, with a mirror image on either side of the picture. */
 typedef struct plane {
   size_t wide, high;
   double *number;
   gsl_fft_complex_wavetable *table[2];
   gsl_fft_complex_workspace *work[2];
 } plane;
+
+/* Whether the side has no greater prime factor. */
+static bool has_factors(size_t side, size_t most) {
+  for (size_t factor = 2; factor <= most; factor++)
+    while (side % factor == 0) side /= factor;
+  return side == 1;
+}
+
+/* A transform takes a time in proportion to its side's greatest factor. Above so much a longer side
+ * is faster. */
+static size_t mirrored_side(size_t side) {
+  const size_t slow = 100;
+  size_t longer = 3 * side;
+  while (!has_factors(longer, 7)) longer++;
+  return has_factors(2 * side, slow) ? 2 * side : longer;
+}
 
 static void free_plane(plane *p) {
   for (int i = 0; i < 2; i++) {
@@ -61,15 +78,23 @@ static double share(double x, double y, double deg) {
   return sum / (n * n) * (deg * ABBE_DEGREE) * (deg * ABBE_DEGREE);
 }
 
+/* Light goes as far as the picture is long. A longer side has both ends of that way, each of a
+ * half. */
+static double reach(double far, size_t side, size_t whole) {
+  const double left = (double)side - far;
+  return left > 0 || whole == 2 * side ? 1 : left < 0 ? 0 : 0.5;
+}
+
 /* Transformed, it is real, for it is even. */
-static void fill_spread(plane *p, double deg) {
+static void fill_spread(plane *p, const abbe_image *image, double deg) {
   double elsewhere = 0;
   for (size_t y = 0; y < p->high; y++)
     for (size_t x = 0; x < p->wide; x++) {
       const double dx = fmin((double)x, (double)(p->wide - x));
       const double dy = fmin((double)y, (double)(p->high - y));
-      if (x + y == 0) continue;
-      elsewhere += p->number[2 * (y * p->wide + x)] = share(dx, dy, deg);
+      const double part = reach(dx, image->width, p->wide) * reach(dy, image->height, p->high);
+      if (x + y == 0 || !(part > 0)) continue;
+      elsewhere += p->number[2 * (y * p->wide + x)] = part * share(dx, dy, deg);
     }
   p->number[0] = 1 - elsewhere;
   transform(p, gsl_fft_forward);
@@ -80,16 +105,21 @@ static double finite(float value) {
   return isnan(value) ? 0 : fmin(fmax((double)value, -most), most);
 }
 
-static size_t mirrored(size_t at, size_t side) {
-  return at < side ? at : 2 * side - 1 - at;
+/* What lies between the mirror images of a longer side is not reached. */
+static size_t mirrored(size_t at, size_t side, size_t whole) {
+  return at < side           ? at
+         : at < 2 * side     ? 2 * side - 1 - at
+         : at + side < whole ? 0
+                             : whole - 1 - at;
 }
 
 /* Channels `a` and, where it is another one, `b`, as real and imaginary part. */
 static void spread_two(abbe_image *image, size_t a, size_t b, const plane *spread, plane *p) {
   for (size_t i = 0; i < p->wide * p->high; i++) {
     const float *from =
-        image->data + image->channels * (mirrored(i / p->wide, image->height) * image->width +
-                                         mirrored(i % p->wide, image->width));
+        image->data +
+        image->channels * (mirrored(i / p->wide, image->height, p->high) * image->width +
+                           mirrored(i % p->wide, image->width, p->wide));
     p->number[2 * i] = finite(from[a]);
     p->number[2 * i + 1] = finite(from[b]);
   }
@@ -110,10 +140,10 @@ abbe_result abbe_glare_add(abbe_image *image, double high_deg, abbe_error *error
                           "glare is for at most %zu pixels, and the picture has %zux%zu",
                           ABBE_GLARE_MAX_PIXELS, image->width, image->height);
   plane spread, p = {0};
-  const bool made = make_plane(2 * image->width, 2 * image->height, &spread) &&
-                    make_plane(2 * image->width, 2 * image->height, &p);
+  const size_t wide = mirrored_side(image->width), high = mirrored_side(image->height);
+  const bool made = make_plane(wide, high, &spread) && make_plane(wide, high, &p);
   if (made) {
-    fill_spread(&spread, high_deg / (double)image->height);
+    fill_spread(&spread, image, high_deg / (double)image->height);
     spread_two(image, 0, 1, &spread, &p);
     spread_two(image, 2, 2, &spread, &p);
   }

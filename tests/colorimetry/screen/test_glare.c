@@ -4,6 +4,8 @@
 #include "base/maths.h"
 #include "colorimetry/screen/glare.h"
 
+#include <time.h>
+
 static void make(size_t width, size_t height, abbe_image *image) {
   static const char *const names[] = {"R", "G", "B"};
   OK(abbe_image_make(width, height, 3, names, image, &error));
@@ -34,7 +36,7 @@ TEST(the_spread_is_the_whole_light) {
 }
 
 TEST(a_point_becomes_the_spread) {
-  enum { SIDE = 255, MIDDLE = SIDE / 2 };
+  enum { SIDE = 257, MIDDLE = SIDE / 2 };
   static const double highs[] = {2, 20};
   for (size_t k = 0; k < 2; k++) {
     const double deg = highs[k] / SIDE;
@@ -65,13 +67,16 @@ TEST(a_point_becomes_the_spread) {
 }
 
 TEST(no_light_is_lost) {
-  FILLED(abbe_image, image, make(37, 21, &image));
-  for (size_t i = 0; i < 37 * 21 * 3; i++) image.data[i] = i % 3 == 2 ? 0.7f : (float)(i * i % 97);
-  const double before[] = {total(&image, 0), total(&image, 1), total(&image, 2)};
-  OK(abbe_glare_add(&image, 10, &error));
-  for (size_t k = 0; k < 3; k++) assert_near(total(&image, k), before[k], 1e-5 * before[k]);
-  /* what is even stays so, at the edges too */
-  for (size_t i = 2; i < 37 * 21 * 3; i += 3) assert_near((double)image.data[i], 0.7, 1e-6);
+  for (size_t wide = 37; wide <= 103; wide += 66) { /* 103: with a longer side */
+    FILLED(abbe_image, image, make(wide, 21, &image));
+    for (size_t i = 0; i < wide * 21 * 3; i++)
+      image.data[i] = i % 3 == 2 ? 0.7f : (float)(i * i % 97);
+    const double before[] = {total(&image, 0), total(&image, 1), total(&image, 2)};
+    OK(abbe_glare_add(&image, 10, &error));
+    for (size_t k = 0; k < 3; k++) assert_near(total(&image, k), before[k], 1e-5 * before[k]);
+    /* what is even stays so, at the edges too */
+    for (size_t i = 2; i < wide * 21 * 3; i += 3) assert_near((double)image.data[i], 0.7, 1e-6);
+  }
 }
 
 TEST(what_is_not_finite_does_not_spread) {
@@ -83,4 +88,17 @@ TEST(what_is_not_finite_does_not_spread) {
   image.height = ABBE_GLARE_MAX_PIXELS;
   REFUSED(ABBE_INVALID_ARGUMENT, "at most", abbe_glare_add(&image, 10, &error));
   image.height = 8;
+}
+
+/* 32749 is prime. */
+TEST(sides_without_factors_are_fast) {
+  FILLED(abbe_image, image, make(32749, 1, &image));
+  for (size_t i = 0; i < 32749; i++) image.data[3 * i] = (float)(i % 97);
+  const double before = total(&image, 0);
+  const clock_t start = clock();
+  OK(abbe_glare_add(&image, 0.1, &error));
+  const double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
+  print_message("%.3f s\n", seconds);
+  assert_true(seconds < 2);
+  assert_near(total(&image, 0), before, 1e-5 * before);
 }
