@@ -1,6 +1,7 @@
 #include "library/choice/finer_scene.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void middle(const double a[3], const double b[3], bool unit, double out[3]) {
@@ -36,6 +37,18 @@ static abbe_result quarter(const abbe_mesh *from, abbe_mesh *out, abbe_error *er
   return result;
 }
 
+/* Each face's coating for the four that it is cut into. */
+static abbe_result quarter_coatings(abbe_coatings *c, abbe_error *error) {
+  if (c == NULL || c->face == NULL) return ABBE_OK;
+  uint8_t *face = malloc(4 * c->face_count + 1);
+  if (face == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for coated faces");
+  for (size_t i = 0; i < c->face_count; i++) memset(face + 4 * i, c->face[i], 4);
+  free(c->face);
+  c->face = face;
+  c->face_count *= 4;
+  return ABBE_OK;
+}
+
 size_t abbe_finer_scene_faces(const abbe_scene *scene) {
   size_t faces = 0;
   for (size_t i = 0; i < scene->object_count; i++)
@@ -47,12 +60,13 @@ size_t abbe_finer_scene_faces(const abbe_scene *scene) {
 abbe_result abbe_finer_scene_cut(abbe_scene *scene, abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++) {
-    abbe_mesh finer;
-    if (abbe_object_kind_of(&scene->object[i]) != ABBE_OBJECT_REFRACTOR) continue;
-    result = quarter(&scene->object[i].mesh, &finer, error);
-    if (result != ABBE_OK) break;
-    abbe_mesh_free(&scene->object[i].mesh);
-    scene->object[i].mesh = finer;
+    abbe_object *object = &scene->object[i];
+    abbe_mesh finer = {0};
+    if (abbe_object_kind_of(object) != ABBE_OBJECT_REFRACTOR) continue;
+    result = quarter(&object->mesh, &finer, error);
+    if (result == ABBE_OK) result = quarter_coatings(object->coatings, error);
+    abbe_mesh_free(result == ABBE_OK ? &object->mesh : &finer);
+    if (result == ABBE_OK) object->mesh = finer;
   }
   return result;
 }

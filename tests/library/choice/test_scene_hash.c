@@ -30,3 +30,20 @@ TEST(crystals_have_axes_two_indices_and_two_losses) {
   hash[3] = abbe_scene_hash(&scene);
   for (int i = 1; i < 4; i++) assert_true(hash[i] != hash[i - 1]);
 }
+
+TEST(a_finer_scene_keeps_its_coatings) {
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BRICK(
+      "flat, coating: [{layers: [[1.38, 99.6]], faces: [table]}, "
+      "{layers: [[2.1, 60]], faces: [girdle]}]") BALL("flat, coating: {layers: "
+                                                      "[[1.38, 99.6]]}"));
+  const abbe_object *brick = &scene.object[1];
+  const abbe_coatings *c = brick->coatings;
+  const size_t faces = brick->mesh.face_count;
+  FREED uint8_t *before = malloc(faces);
+  memcpy(before, c->face, faces);
+  OK(abbe_finer_scene_cut(&scene, &error));
+  assert_int_equal(brick->mesh.face_count, 4 * faces);
+  assert_int_equal(c->face_count, brick->mesh.face_count);
+  for (size_t i = 0; i < c->face_count; i++) assert_int_equal(c->face[i], before[i / 4]);
+  assert_null(scene.object[2].coatings->face); /* on all of it */
+}
