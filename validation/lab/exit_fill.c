@@ -60,6 +60,11 @@ static abbe_result make_materials(fill *f, abbe_error *error) {
                             "the object '%s' scatters light, so that no ray leaves it as it came: "
                             "take a volume without rays",
                             f->lone->body.name);
+  if (result == ABBE_OK && f->media.films.count > 0)
+    result = abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "the object '%s' has a coating, which stored rays do not see: take a "
+                            "volume without rays",
+                            f->lone->body.name);
   return result;
 }
 

@@ -37,8 +37,8 @@ typedef struct abbe_exit_fill_statistics {
 } abbe_exit_fill_statistics;
 
 /* Into a volume whose body, region and nodes are there. ABBE_UNSUPPORTED for a crystal, which a ray
- * leaves as two; ABBE_CANCELLED; errors of abbe_light_exits_make, of checkpoints
- * and of the tracer's tables. */
+ * leaves as two, for a medium and for a coating; ABBE_CANCELLED; errors of abbe_light_exits_make,
+ * of checkpoints and of the tracer's tables. */
 abbe_result abbe_exit_fill(const abbe_lone_object *lone, const abbe_exit_fill_desc *desc,
                            abbe_caustic_volume *volume, abbe_exit_fill_statistics *statistics,
                            abbe_error *error);

@@ -337,4 +337,8 @@ TEST(requests) {
   REFUSED(ABBE_CANCELLED, "", abbe_volume_fill(&scene, &desc, &v, &done, &error));
   assert_int_equal(calls, 1);
   assert_null(v.exits.exit);
+  OWNED(abbe_scene, coated) = scene_of(WEDGE("crown, coating: {layers: [[1.38, 99.6]]}"));
+  desc.progress = NULL;
+  REFUSED(ABBE_UNSUPPORTED, "'wedge' has a coating",
+          abbe_volume_fill(&coated, &desc, &v, &done, &error));
 }
