@@ -124,7 +124,8 @@ abbe_result abbe_lib_picture_save_png(const abbe_lib_picture *picture, const cha
   ABBE_REQUIRE(picture && path, error);
   abbe_screen_png_desc desc = {0};
   static const char *const depths[] = {"8", "16"};
-  int depth = 0;
+  static const int bits[] = {8, 16};
+  int depth = -1;
   const abbe_lib_setting known[] = {ABBE_LIB_TEXT("config", &desc.display.config),
                                     ABBE_LIB_TEXT("display", &desc.display.display),
                                     ABBE_LIB_TEXT("view", &desc.display.view),
@@ -139,6 +140,6 @@ abbe_result abbe_lib_picture_save_png(const abbe_lib_picture *picture, const cha
   if (result != ABBE_OK) return result;
   desc.stated = !isnan(desc.display.exposure);
   if (!desc.stated) desc.display.exposure = 0;
-  desc.bits = depth == 1 ? 16 : 0;
+  desc.bits = depth < 0 ? 0 : bits[depth];
   return abbe_screen_png_write(path, &picture->image, &desc, error);
 }

@@ -1,6 +1,7 @@
 /* Pictures by handle: pixels and names in and out, files there and back, what is refused. */
 #include "tests/check.h"
 
+#include "colorimetry/screen/screen_file.h"
 #include "library/lib_picture.h"
 
 #include <unistd.h>
@@ -91,6 +92,20 @@ TEST(a_png_is_for_a_screen) {
       ABBE_COLOUR);
   assert_int_equal(abbe_lib_picture_save_png(p, path, (const char *const[]){"bits=12"}, 1, &error),
                    ABBE_INVALID_ARGUMENT);
+  assert_int_equal(unlink(path), 0);
+}
+
+/* Those that are stated are not replaced by those that the file needs. */
+TEST(bits_are_taken_or_refused) {
+  HELD(abbe_lib_picture, p) = made();
+  const char *path = printed("%s/a.png", folder);
+  const char *const hdr[] = {"display=Rec.2100 PQ", "bits=16", "bits=8"};
+  OK(abbe_lib_picture_save_png(p, path, hdr, 1, &error));
+  OK(abbe_lib_picture_save_png(p, path, hdr, 2, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "16 bits", abbe_lib_picture_save_png(p, path, hdr, 3, &error));
+  if (abbe_screen_kind_of("a.avif")->library == NULL)
+    REFUSED(ABBE_INVALID_ARGUMENT, "10 or 12",
+            abbe_lib_picture_save_png(p, "a.avif", hdr + 2, 1, &error));
   assert_int_equal(unlink(path), 0);
 }
 
