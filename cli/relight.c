@@ -116,7 +116,7 @@ int abbe_command_relight(int argc, char **argv) {
   const char *const targets[] = {r.exr, r.png};
   abbe_result result = abbe_command_check_targets(targets, 2, &error);
   if (result == ABBE_OK && r.png != NULL)
-    result = abbe_screen_options_check(&r.screen, r.desc.space, &error);
+    result = abbe_screen_options_check(&r.screen, r.png, r.desc.space, &error);
   if (result == ABBE_OK) result = abbe_spectral_options_load(&r.spectral, &error);
   if (result == ABBE_OK) result = abbe_command_read_picture(r.in, &image, &error);
   if (result == ABBE_OK) result = relight(&r, &image, &error);

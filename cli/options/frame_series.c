@@ -190,7 +190,7 @@ void abbe_frame_series_take_move(abbe_frame_series *s, abbe_scene_input_changes 
 
 void abbe_frame_series_check(const abbe_frame_series *s, const char *png,
                              struct argp_state *state) {
-  const abbe_screen_file_needs needs = {.moves = true};
+  const abbe_screen_file_needs needs = {.moves = true, .per_second = rate(s)};
   abbe_error error = {0};
   if (s->count > 0 && png != NULL && abbe_screen_file_check(png, &needs, &error) != ABBE_OK)
     argp_error(state, "%s", error.text);

@@ -46,7 +46,8 @@ void abbe_frame_series_take(abbe_frame_series *series, const char *text);
 /* "KEY=A:B"; the scene begins with KEY=A. Ends the program where it is none, or one too many. */
 void abbe_frame_series_take_move(abbe_frame_series *series, abbe_scene_input_changes *changes,
                                  const char *text);
-/* Moves without frames over time, and a file (NULL: none) that cannot move, end the program. */
+/* Moves without frames over time, and a file (NULL: none) that cannot move at their rate, end the
+ * program. */
 void abbe_frame_series_check(const abbe_frame_series *series, const char *png,
                              struct argp_state *state);
 

@@ -129,12 +129,19 @@ void abbe_screen_options_end(const abbe_screen_options *o, const char *png,
       argp_error(state, "%s %s", i == 0 ? "--bits:" : "--alpha:", error.text);
 }
 
-abbe_result abbe_screen_options_check(const abbe_screen_options *o, abbe_rgb_space space,
-                                      abbe_error *error) {
+abbe_result abbe_screen_options_check(const abbe_screen_options *o, const char *png,
+                                      abbe_rgb_space space, abbe_error *error) {
+  static const char *const names[] = {"R", "G", "B"};
   abbe_display *display = NULL;
+  abbe_image probe = {0};
   abbe_display_desc desc = o->display;
   desc.source_space = abbe_rgb_space_ocio_name(space);
-  const abbe_result result = abbe_display_make(&desc, &display, error);
+  abbe_result result = abbe_display_make(&desc, &display, error);
+  if (result == ABBE_OK) result = abbe_image_make(1, 1, 3, names, &probe, error);
+  if (result == ABBE_OK) result = abbe_display_apply(display, &probe, error);
+  const abbe_screen_file_needs needs = {.bits = o->bits, .transfer = probe.transfer};
+  if (result == ABBE_OK) result = abbe_screen_file_check(png, &needs, error);
+  abbe_image_free(&probe);
   abbe_display_free(display);
   return result;
 }

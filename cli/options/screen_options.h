@@ -29,10 +29,11 @@ extern const struct argp abbe_screen_options_argp;
 void abbe_screen_options_end(const abbe_screen_options *options, const char *png,
                              struct argp_state *state);
 
-/* A view that the configuration does not have is found out before the work: that of a picture in
- * that space. Errors of abbe_display_make. */
-abbe_result abbe_screen_options_check(const abbe_screen_options *options, abbe_rgb_space space,
-                                      abbe_error *error);
+/* A view that the configuration does not have, or that the file at png does not hold, is found out
+ * before the work: that of a picture in that space. Errors of abbe_display_make and
+ * abbe_screen_file_check. */
+abbe_result abbe_screen_options_check(const abbe_screen_options *options, const char *png,
+                                      abbe_rgb_space space, abbe_error *error);
 
 /* Shows it. `layer` and `name` as of abbe_screen_png_desc. */
 abbe_result abbe_screen_options_write(const abbe_screen_options *options, const char *path,

@@ -153,7 +153,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 static abbe_result check_display(const request *q, abbe_error *error) {
   if (q->png == NULL) return ABBE_OK;
   const bool printed = abbe_method_of(q->render.desc.profile)->printed;
-  return abbe_screen_options_check(&q->screen,
+  return abbe_screen_options_check(&q->screen, q->png,
                                    printed ? ABBE_RGB_SPACE_REC709 : q->render.desc.space, error);
 }
 

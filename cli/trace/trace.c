@@ -281,7 +281,7 @@ static abbe_result check_targets(const request *q, abbe_error *error) {
   abbe_result targeted = abbe_command_check_targets(targets, part ? 2 : 5, error);
   if (targeted != ABBE_OK) return targeted;
   if (q->png == NULL || part) return ABBE_OK;
-  return abbe_screen_options_check(&q->screen, q->desc.space, error);
+  return abbe_screen_options_check(&q->screen, q->png, q->desc.space, error);
 }
 
 /* The checkpoint stands beside the first output; each rank has its own. */

@@ -286,9 +286,6 @@ abbe_result abbe_gif_move(const char *path, const char *const *frame, size_t cou
                           double per_second, abbe_error *error) {
   abbe_file_writer writer;
   gif *g;
-  if (per_second > 50)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "%s: a GIF shows at most 50 pictures a second, not %g", path, per_second);
   abbe_result result = begin(path, &writer, &g, error);
   if (result != ABBE_OK) return result;
   for (size_t i = 0; i < count && result == ABBE_OK; i++) {

@@ -22,12 +22,12 @@
 #endif
 
 static const abbe_screen_kind kinds[] = {
-    {".png", "PNG", "8 or 16", {8, 16}, true, NULL, abbe_png_write, abbe_animated_png_write},
-    {".avif", "AVIF", "10 or 12", {10, 12}, false, AVIF(abbe_avif_write), NULL},
-    {".webp", "WebP", "8", {8, 8}, true, WEBP(abbe_webp_write, abbe_webp_move)},
-    {".gif", "GIF", "8", {8, 8}, false, NULL, abbe_gif_write, abbe_gif_move},
-    {".jpg", "JPEG", "8", {8, 8}, false, JPEG(abbe_jpeg_write), NULL},
-    {".jpeg", "JPEG", "8", {8, 8}, false, JPEG(abbe_jpeg_write), NULL}};
+    {".png", "PNG", "8 or 16", {8, 16}, true, NULL, abbe_png_write, abbe_animated_png_write, 1000},
+    {".avif", "AVIF", "10 or 12", {10, 12}, false, AVIF(abbe_avif_write), NULL, 0},
+    {".webp", "WebP", "8", {8, 8}, true, WEBP(abbe_webp_write, abbe_webp_move), 1000},
+    {".gif", "GIF", "8", {8, 8}, false, NULL, abbe_gif_write, abbe_gif_move, 50},
+    {".jpg", "JPEG", "8", {8, 8}, false, JPEG(abbe_jpeg_write), NULL, 0},
+    {".jpeg", "JPEG", "8", {8, 8}, false, JPEG(abbe_jpeg_write), NULL, 0}};
 
 const abbe_screen_kind *abbe_screen_kind_of(const char *path) {
   const char *dot = path != NULL ? strrchr(path, '.') : NULL;
@@ -59,19 +59,26 @@ abbe_result abbe_screen_file_check(const char *path, const abbe_screen_file_need
   if (needs->moves && kind->move == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: %s does not move here; .png, .webp and .gif do", path, kind->name);
+  if (needs->moves && !(needs->per_second >= 0.1 && needs->per_second <= kind->most_per_second))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: a %s shows 0.1 to %g frames a second, not %g", path, kind->name,
+                          kind->most_per_second, needs->per_second);
+  if (needs->transfer != 0 && kind->bit[1] == 8)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: PQ and HLG are held by .png and .avif, not by %s", path, kind->name);
+  if (needs->transfer != 0 && needs->bits == 8)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: PQ and HLG are written with 16 bits",
+                          path);
   return ABBE_OK;
 }
 
 abbe_result abbe_screen_file_write(const char *path, const abbe_image *image, int bits,
                                    abbe_error *error) {
   const abbe_screen_kind *kind = kind_or_png(path);
-  const abbe_screen_file_needs needs = {.bits = bits};
+  const abbe_screen_file_needs needs = {.bits = bits, .transfer = image->transfer};
   abbe_result result = abbe_screen_file_check(path, &needs, error);
   if (result != ABBE_OK) return result;
   const bool png = kind == &kinds[0];
-  if (image->transfer != 0 && kind->bit[1] == 8)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "%s: PQ and HLG are held by .png and .avif, not by %s", path, kind->name);
   if (image->data == NULL || (!png && image->channels < 3))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: there are no R, G, B to write", path);
   if (bits == 0) bits = kind->bit[png && image->transfer != 0];
@@ -80,14 +87,11 @@ abbe_result abbe_screen_file_write(const char *path, const abbe_image *image, in
 
 abbe_result abbe_screen_file_move(const char *path, const char *const *frame, size_t count,
                                   double per_second, abbe_error *error) {
-  const abbe_screen_file_needs needs = {.moves = true};
+  const abbe_screen_file_needs needs = {.moves = true, .per_second = per_second};
   const abbe_result result = abbe_screen_file_check(path, &needs, error);
   if (result != ABBE_OK) return result;
   if (count == 0 || count > 1000000)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: of %zu frames; 1 to 1000000 can move",
                           path, count);
-  if (!(per_second >= 0.1 && per_second <= 1000))
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "%s: %g frames a second; 0.1 to 1000 can be shown", path, per_second);
   return kind_or_png(path)->move(path, frame, count, per_second, error);
 }

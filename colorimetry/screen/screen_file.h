@@ -26,17 +26,20 @@ typedef struct abbe_screen_kind {
    * kind holds one picture. */
   abbe_result (*move)(const char *path, const char *const *frame, size_t count, double per_second,
                       abbe_error *error);
+  double most_per_second; /* of what moves */
 } abbe_screen_kind;
 
 /* The kind that a path's ending names, in whatever case; NULL: none of them. */
 const abbe_screen_kind *abbe_screen_kind_of(const char *path);
 
 /* Whether a file of that name is written by this build, with so many bits (0: its default), with
- * channel A, moving. ABBE_UNSUPPORTED without the library, else ABBE_INVALID_ARGUMENT, with what to
- * take. A path of another ending is a PNG. */
+ * channel A, for an HDR display (transfer of abbe_image; 0: none), moving at so many frames a
+ * second. ABBE_UNSUPPORTED without the library, else ABBE_INVALID_ARGUMENT, with what to take. A
+ * path of another ending is a PNG. */
 typedef struct abbe_screen_file_needs {
-  int bits;
+  int bits, transfer;
   bool alpha, moves;
+  double per_second; /* of what moves */
 } abbe_screen_file_needs;
 abbe_result abbe_screen_file_check(const char *path, const abbe_screen_file_needs *needs,
                                    abbe_error *error);

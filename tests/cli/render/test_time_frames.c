@@ -130,4 +130,9 @@ TEST(what_is_refused) {
   assert_true(run_refuses(GEM_TRACE "--frames 0:4 --json", 2, "--frames writes frames"));
   assert_true(run_refuses(GEM_TRACE "--frames 0:4 -o t.exr --merge a b", 2, "goes without"));
   assert_true(run_refuses(GEM_TRACE "--fps 4 -o t.exr", 2, "--fps goes with --frames"));
+  /* before any frame is drawn */
+  assert_true(run_refuses(GEM "--frames 0:2 --fps 60 -o t.gif", 2, "to 50 frames a second"));
+  assert_true(run_refuses(GEM_TRACE "--frames 0:2 --fps 60 -o t.gif", 2, "to 50 frames a second"));
+  assert_true(run_refuses(GEM "--frames 0:2 --display 'Rec.2100 PQ' -o t.gif", 1, "PQ and HLG"));
+  assert_true(run_refuses(GEM_TRACE "--frames 0:2 --display 'Rec.2100 HLG' -o t.gif", 1, "PQ and"));
 }

@@ -160,7 +160,7 @@ TEST(frames_move_at_their_pace) {
     assert_true(d.frames == 3 && off < of[i].most);
     assert_near(decode(path, 0, rgb).ms, of[i].ms, 0.5);
   }
-  REFUSED(ABBE_INVALID_ARGUMENT, "50 pictures",
+  REFUSED(ABBE_INVALID_ARGUMENT, "to 50 frames",
           abbe_screen_file_move(name("a.gif"), frames, 3, 60, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_screen_file_move(name("a.avif"), frames, 3, 25, &error));
 }
@@ -170,10 +170,19 @@ TEST(what_a_kind_does_not_hold_is_said) {
     const char *file;
     abbe_screen_file_needs needs;
     const char *words;
-  } of[] = {{"a.png", {.bits = 10}, "8 or 16"},  {"a", {.bits = 12}, "8 or 16"},
-            {"a.avif", {.bits = 8}, "10 or 12"}, {"a.webp", {.bits = 16}, "8 bits"},
-            {"a.gif", {.alpha = true}, ".webp"}, {"a.jpg", {.alpha = true}, ".webp"},
-            {"a.jpg", {.moves = true}, ".gif"},  {"a.avif", {.moves = true}, ".gif"}};
+  } of[] = {{"a.png", {.bits = 10}, "8 or 16"},
+            {"a", {.bits = 12}, "8 or 16"},
+            {"a.avif", {.bits = 8}, "10 or 12"},
+            {"a.webp", {.bits = 16}, "8 bits"},
+            {"a.gif", {.alpha = true}, ".webp"},
+            {"a.jpg", {.alpha = true}, ".webp"},
+            {"a.jpg", {.moves = true}, ".gif"},
+            {"a.avif", {.moves = true}, ".gif"},
+            {"a.gif", {.moves = true, .per_second = 60}, "to 50 frames"},
+            {"a.png", {.moves = true, .per_second = 0.01}, "to 1000 frames"},
+            {"a.webp", {.transfer = 16}, "PQ"},
+            {"a.gif", {.transfer = 18}, "HLG"},
+            {"a.png", {.transfer = 16, .bits = 8}, "16 bits"}};
   for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
     const abbe_screen_kind *kind = abbe_screen_kind_of(of[i].file);
     if (kind != NULL && kind->library != NULL)
