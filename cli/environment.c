@@ -161,10 +161,12 @@ static abbe_result say_of_picture(const request *r, abbe_error *error) {
 enum { KEY_PNG = 256, KEY_EXPOSURE, KEY_JSON };
 
 static const struct argp_option options[] = {
-    {"output", 'o', "OUT.exr", ABBE_ARGUMENT_WRITES, "write them as a latitude-longitude picture",
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES,
+     "the scene-linear picture, .exr; or that for a display, by its ending as --png", 0},
+    {"png", KEY_PNG, "OUT.png", ABBE_ARGUMENT_WRITES,
+     "the picture for a display, through OpenColorIO: .png, .webp, .jpg, .gif or .avif", 0},
+    {"exposure", KEY_EXPOSURE, "STOPS", 0, "of the picture for a display, -60 to 60; without it, 0",
      0},
-    {"png", KEY_PNG, "OUT.png", ABBE_ARGUMENT_WRITES, "the same for a screen", 0},
-    {"exposure", KEY_EXPOSURE, "STOPS", 0, "of the PNG, -60 to 60; without it, 0", 0},
     {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0},
     {0}};
 

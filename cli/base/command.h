@@ -21,7 +21,7 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
 /* X(name, summary): every subcommand NAME is `int abbe_command_NAME(int argc, char **argv)`;
  * argv[0] is "abbe NAME". Three groups, as `abbe help` shows them. */
 #define ABBE_SCENE_COMMANDS(X)                                                                     \
-  X(render, "render a stone or a scene to OpenEXR and PNG")                                        \
+  X(render, "render a stone or a scene to OpenEXR and to a picture for a display")                 \
   X(view, "show it in a window: turn it, change it, see the light follow")                         \
   X(trace, "trace the reference: what light really does, with standard errors")                    \
   X(gem, "say what a gem's design holds, draw it, report on it, convert it, change its angles")    \
@@ -32,7 +32,7 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(methods, "the published methods that render can take in place of its own, and their options")
 #define ABBE_PICTURE_COMMANDS(X)                                                                   \
   X(info, "say what an EXR holds: size, channels, space, settings, statistics")                    \
-  X(display, "turn a linear EXR into a PNG for a screen, through OpenColorIO")                     \
+  X(display, "turn a linear EXR into a picture for a display, through OpenColorIO")                \
   X(pixel, "say what a picture has at a pixel: spectrum, XYZ, wavelength, colour temperature")     \
   X(relight, "show a spectral picture to another observer, or under another illuminant")           \
   X(gamut, "say what of a picture a display's gamut cannot hold, and what mapping it costs")       \

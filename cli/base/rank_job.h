@@ -29,8 +29,8 @@ int abbe_rank_job_end(const abbe_rank_job *job, const char *program, abbe_result
 
 /* `abbe render`, and its frames by several processes, as cli/mpi starts them. */
 
-/* --turntable or --frames A:B: each rank draws frames of its own, rank 0 makes the PNG that moves.
- * Gives the exit code. */
+/* --turntable or --frames A:B: each rank draws frames of its own, rank 0 makes the picture that
+ * moves. Gives the exit code. */
 int abbe_render_by_ranks(int argc, char **argv, abbe_rank_job *job);
 
 /* `abbe trace`, and the same by several processes, as cli/mpi starts them. */

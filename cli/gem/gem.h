@@ -24,7 +24,7 @@
   X(retarget, "the design at the angles of another stone, its meets kept")                         \
   X(report, "judge the cut in a stone: brightness, leakage, fire, by tilt, with errors")           \
   X(optimise, "the crown and pavilion angles that do best in a stone, meets kept")                 \
-  X(convert, "a design as .asc or .gem, or as a solid: STL, OBJ, glTF")
+  X(convert, "a design as .asc, .gem or .gcs, or as a solid: STL, OBJ, glTF")
 
 /* The pairs of one search by several processes (validation/measure/gem/ranked_optimum.h); rank 0
  * writes and says what came of it. Gives the exit code. */

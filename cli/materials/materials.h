@@ -33,8 +33,8 @@
   X(set, "change values of a record, and nothing else in the file")                                \
   X(add, "add a record to a table, new or from another table")                                     \
   X(remove, "take records out of a table")                                                         \
-  X(import, "make a table of catalogues, refractiveindex.info files and points")                   \
-  X(export, "write materials as AGF, RII, CSV or YAML")
+  X(import, "make a table of catalogues, refractiveindex.info files, MaterialX and points")        \
+  X(export, "write materials as YAML, SQLite, AGF, RII, CSV or MaterialX")
 
 #define ABBE_MATERIALS_DECLARE(name, summary) int abbe_materials_##name(int argc, char **argv);
 ABBE_MATERIALS_VERBS(ABBE_MATERIALS_DECLARE)

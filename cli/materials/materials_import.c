@@ -96,7 +96,7 @@ static const struct argp parser = {
     .parser = parse,
     .args_doc = "FILE|FOLDER…",
     .doc = "Makes a material table of catalogues and data files: Zemax AGF, refractiveindex.info "
-           "YAML, CSV of measured points, tables of ours.\v"
+           "YAML, CSV of measured points, MaterialX, tables and stores of ours.\v"
            "Examples:\n"
            "  abbe materials import schott.agf -o schott.yaml\n"
            "  abbe materials import SiO2/nk/Malitson.yml C/nk/Peter.yml -o gems.yaml\n"

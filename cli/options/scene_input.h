@@ -48,7 +48,7 @@ enum {
   {                                                                                                \
     "alpha", ABBE_SCENE_INPUT_ALPHA, NULL, 0,                                                      \
         "nothing behind the objects, and how much of each pixel they cover as alpha: "             \
-        "premultiplied in the EXR (channel A), straight in the PNG",                               \
+        "premultiplied in the EXR (channel A), straight in a PNG or WebP",                         \
         group                                                                                      \
   }
 #define ABBE_SCENE_INPUT_STUDIO_OPTIONS(group)                                                     \

@@ -1,5 +1,5 @@
-/* screen_options.h: how a picture is shown, for every command that writes a PNG: --ocio, --display,
- * --view, --exposure, --gamut, --white, --glare and --bits. Internal to cli/.
+/* screen_options.h: how a picture is shown, for every command that writes one for a display:
+ * --ocio, --display, --view, --exposure, --gamut, --white, --glare and --bits. Internal to cli/.
  */
 #ifndef ABBE_CLI_OPTIONS_SCREEN_OPTIONS_H
 #define ABBE_CLI_OPTIONS_SCREEN_OPTIONS_H
@@ -18,7 +18,7 @@ typedef struct abbe_screen_options {
   bool exposed, stated; /* --exposure auto, --exposure STOPS */
   int bits;
   double glare_deg;
-  bool alpha; /* the picture has channel A, for the PNG */
+  bool alpha; /* the picture has channel A, and its file for a display shall have it */
 } abbe_screen_options;
 
 /* An argp child; its input is an abbe_screen_options. */

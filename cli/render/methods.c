@@ -1,4 +1,5 @@
-/* abbe methods: what can be drawn in place of the renderer's own way, and the options of that. */
+/* abbe methods: what can be drawn in place of the renderer's own way, and the options that abbe
+ * render shows here. */
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/render/render_options.h"
@@ -24,9 +25,8 @@ int abbe_command_methods(int argc, char **argv) {
       parse,
       NULL,
       "Lists the published methods that 'abbe render --profile NAME' draws by, as they were "
-      "printed "
-      "and, with -cie, with CIE weights, Fresnel's law and watts. Below are the options of 'abbe "
-      "render' that only they, pinholes and caustic volumes take, and its seldom ones.\v"
+      "printed and, with -cie, with CIE weights, Fresnel's law and watts. Below are the options of "
+      "'abbe render' that only they, pinholes and caustic volumes take, and its seldom ones.\v"
       "Examples:\n"
       "  abbe methods\n"
       "  abbe render scenes/sphere.yaml --profile thesis --png thesis.png --view Plain\n"
@@ -38,6 +38,7 @@ int abbe_command_methods(int argc, char **argv) {
   abbe_arguments_parse(&argp, 0, argc, argv, NULL);
   for (int i = 0; i < ABBE_PROFILE_COUNT; i++)
     printf("%-14s %s\n", abbe_profile_name((abbe_profile)i), abbe_method_of((abbe_profile)i)->says);
-  printf("\n'abbe methods --help' shows their options; docs/methods.md compares their pictures.\n");
+  printf("\n'abbe methods --help' shows their options and the seldom ones of 'abbe render'; "
+         "docs/methods.md compares their pictures.\n");
   return ABBE_EXIT_DONE;
 }

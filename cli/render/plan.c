@@ -68,8 +68,8 @@ int abbe_command_plan(int argc, char **argv) {
       options,
       parse,
       NULL,
-      "Says which passes and models a scene asks for, and which fact asks for each. Needs no "
-      "graphics.\v"
+      "Says which passes and models a scene asks for, and which fact asks for each. Takes the "
+      "options of abbe render, those of 'abbe methods --help' too. Needs no graphics.\v"
       "Examples:\n"
       "  abbe plan scenes/gem.yaml\n"
       "  abbe plan scenes/gem.yaml --profile thesis --json\n",

@@ -389,7 +389,7 @@ static abbe_result choose_and_draw(request *q, const abbe_scene *scene, abbe_err
   return result;
 }
 
-/* Each frame is some rank's; the PNG that moves is made once all are there. */
+/* Each frame is some rank's; the picture that moves is made once all are there. */
 static abbe_result draw_together(request *q, const abbe_scene *scene, abbe_result before,
                                  abbe_error *error) {
   before = abbe_rank_job_agree(q->job, before, error);
@@ -426,7 +426,9 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
       options,
       parse,
       NULL,
-      "Renders a scene with its caustics to a scene-linear OpenEXR picture and to a PNG.\v"
+      "Renders a scene with its caustics to a scene-linear OpenEXR picture and to one for a "
+      "display. 'abbe methods --help' shows the seldom options, and those of published methods, "
+      "pinholes and caustic volumes.\v"
       "Examples:\n"
       "  abbe render scenes/gem.yaml -o gem.exr --png gem.png\n"
       "  abbe render scenes/prism.yaml --png prism.png --wavelengths 21 --photons 1024\n"

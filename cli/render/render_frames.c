@@ -32,10 +32,11 @@ static const struct argp_option options[] = {
      "and camera that stay (camera)",
      5},
     {"part", OPTION_PART, "K/N", 0,
-     "only every N-th frame from the K-th on, 0/8 to 7/8, and no PNG that moves", 5},
-    {"resume", OPTION_RESUME, NULL, 0, "draw those frames alone whose files are not there", 5},
+     "only every N-th frame from the K-th on, 0/8 to 7/8, and none that moves", 5},
+    {"resume", OPTION_RESUME, NULL, 0,
+     "draw those frames alone whose files are not there, or are of another request", 5},
     {"merge", OPTION_MERGE, NULL, 0,
-     "draw nothing: make FILE.png of the numbered frames that are there", 5},
+     "draw nothing: make FILE.png, .webp or .gif of the numbered frames that are there", 5},
     {"fps", OPTION_FPS, "F", 0, "frames a second, of time and of the picture that moves (25)", 5},
     {0}};
 

@@ -111,7 +111,7 @@ abbe_result abbe_render_check_in_time(abbe_render_request *request, const abbe_s
 abbe_result abbe_render_check_frame_in_time(abbe_render_request *request, const abbe_scene *scene,
                                             abbe_renderer *renderer, abbe_error *error);
 
-/* Frames of `abbe render --turntable` and `--frames A:B`, and the PNG that moves.
+/* Frames of `abbe render --turntable` and `--frames A:B`, and the picture that moves.
  *
  * A turntable's camera goes around its target about its own upward direction; nothing else moves,
  * so lights' passes are drawn once; or the piece turns the other way and they stay. Over time the

@@ -37,7 +37,7 @@ typedef struct abbe_trace_request {
   size_t frame;             /* number in the series, while it is traced */
 } abbe_trace_request;
 
-/* Frames of `abbe trace --frames A:B`, and the PNG that moves. */
+/* Frames of `abbe trace --frames A:B`, and the picture that moves. */
 
 /* --frames and what goes with it. Its input is the request's abbe_frame_series. */
 extern const struct argp abbe_trace_frames_argp;
@@ -49,8 +49,8 @@ typedef abbe_result (*abbe_trace_frame)(abbe_trace_request *q, const abbe_scene 
                                         abbe_error *error);
 
 /* Each frame of the request's series as a request of its own, whose files are numbered, by
- * trace_one on the scene at its time; then FILE.png of all. What is there is left as it is where
- * the request resumes. */
+ * trace_one on the scene at its time; then the picture that moves of all. What is there is left as
+ * it is where the request resumes. */
 abbe_result abbe_trace_frames(const abbe_trace_request *q, const abbe_scene *scene,
                               abbe_trace_frame trace_one, abbe_error *error);
 

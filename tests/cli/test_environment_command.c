@@ -69,6 +69,6 @@ TEST(what_is_refused) {
   run_fails("\"$abbe\" environment missing.hdr", 1, "missing.hdr");
   assert_int_equal(run_line("\"$abbe\" environment"), 2);
   assert_int_equal(
-      run_line("\"$abbe\" environment s.yaml -o x.png; code=$?; rm s.yaml; exit $code"), 2);
+      run_line("\"$abbe\" environment s.yaml -o x.svg; code=$?; rm s.yaml; exit $code"), 2);
   assert_int_equal(run_left(), 0);
 }

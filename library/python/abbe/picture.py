@@ -1,4 +1,4 @@
-"""Pictures: numpy arrays in and out, OpenEXR and PNG files."""
+"""Pictures: numpy arrays in and out, OpenEXR files, files for a display."""
 import math
 from ctypes import POINTER, addressof, byref, c_float, c_void_p
 
