@@ -27,6 +27,7 @@
   X(nest, "a bubble in a glass ball and a ball of water in glass: the later object is there")      \
   X(slab, "how far a plane-parallel slab moves a ray")                                             \
   X(fresnel, "reflectance of a face at five angles from both sides, and critical angles")          \
+  X(film, "thin films on crown, diamond, topaz and in air: what they reflect and pass")            \
   X(crystal, "calcite: the angle between its rays, their indices, shares and doubled image")       \
   X(rainbow, "primary and secondary rainbows of water")                                            \
   X(pane, "what slabs, of calcite too, reflect and pass with all inner reflections")               \

@@ -1,10 +1,11 @@
-/* Flat faces: the shift of a slab, Fresnel's shares, the critical angle. */
+/* Flat faces: the shift of a slab, Fresnel's shares, the critical angle, films. */
 #include "validation/lab/known/forms/closed_form.h"
 #include "validation/lab/known/known_group.h"
 
 #include "base/maths.h"
 #include "base/number.h"
 #include "spectral/dispersion/dispersion.h"
+#include "spectral/film.h"
 
 #include <stdio.h>
 
@@ -143,5 +144,73 @@ abbe_result abbe_known_fresnel(abbe_known_run *run, abbe_error *error) {
     result = add_share(run, &stage, inside[i], true, error);
   abbe_known_stage_free(&stage);
   for (int i = 0; i < 3 && result == ABBE_OK; i++) result = add_critical(run, materials[i], error);
+  return result;
+}
+
+/* ---- films ---- */
+
+typedef struct film_row {
+  const char *what;
+  double from, n, k, thick_nm, to, degrees;
+  char share; /* s or p: what is reflected of it; P: what passes at 0 degrees */
+  bool three; /* at 450, 550 and 650 nm; else at 550 */
+} film_row;
+
+static abbe_result add_film(abbe_known_run *run, const film_row *f, double lambda_nm,
+                            abbe_error *error) {
+  const bool p = f->share == 'p', passes = f->share == 'P';
+  const abbe_closed_film form = {f->from, f->n, f->k, f->to, f->thick_nm / lambda_nm};
+  const abbe_film_layer layer = {f->n, f->k, f->thick_nm};
+  const double angle = f->degrees / ABBE_KNOWN_DEGREES, to[2] = {f->to, 0};
+  double reflected, passed;
+  abbe_film_light light;
+  abbe_closed_form_film(&form, angle, p, &reflected, &passed);
+  abbe_film_light_at(&layer, 1, f->from > f->to, f->from, to, cos(angle), lambda_nm, &light);
+  abbe_known_answer row = {.unit = "share",
+                           .exact = passes ? passed : reflected,
+                           .traced = passes ? light.transmitted[p] : light.reflected[p],
+                           .tolerance = 1e-12,
+                           .reason = "double precision: some hundred roundings"};
+  abbe_number_format(row.quantity, sizeof row.quantity, "%s, %.4g nm, %s at %.4g degrees, %g nm%s",
+                     f->what, f->thick_nm, passes ? "passed" : "reflected", f->degrees, lambda_nm,
+                     !(f->degrees > 0) ? ""
+                     : p               ? ", p"
+                                       : ", s");
+  return abbe_known_add(run, row, error);
+}
+
+abbe_result abbe_known_film(abbe_known_run *run, abbe_error *error) {
+  static const double quarter = 550 / (4 * 1.38);
+  const double snell = asin(1.61 * sin(20 / ABBE_KNOWN_DEGREES)) * ABBE_KNOWN_DEGREES;
+  const film_row rows[] = {
+      {"MgF2 on crown", 1, 1.38, 0, quarter, 1.52, 0, 's', true},
+      {"no film on crown", 1, 1.38, 0, 0, 1.52, 0, 's', false},
+      {"MgF2 on crown", 1, 1.38, 0, quarter, 1.52, 45, 's', false},
+      {"MgF2 on crown", 1, 1.38, 0, quarter, 1.52, 45, 'p', false},
+      {"MgF2 on crown", 1, 1.38, 0, 2 * quarter, 1.52, 0, 's', false},
+      {"MgF2 on diamond", 1, 1.38, 0, quarter, 2.417, 0, 's', false},
+      {"the root's index on diamond", 1, sqrt(2.417), 0, 550 / (4 * sqrt(2.417)), 2.417, 0, 's',
+       false},
+      {"2.4 on topaz", 1, 2.4, 0, 60, 1.61, 0, 's', true},
+      {"2.4 on topaz", 1, 2.4, 0, 90, 1.61, 0, 's', true},
+      {"2.4 on topaz", 1, 2.4, 0, 120, 1.61, 0, 's', true},
+      {"2.4 on topaz", 1, 2.4, 0, 150, 1.61, 0, 's', true},
+      {"2.4 on topaz, inside", 1.61, 2.4, 0, 120, 1, 20, 's', false},
+      {"2.4 on topaz, inside", 1.61, 2.4, 0, 120, 1, 20, 'p', false},
+      {"2.4 on topaz", 1, 2.4, 0, 120, 1.61, snell, 's', false},
+      {"2.4 on topaz", 1, 2.4, 0, 120, 1.61, snell, 'p', false},
+      {"2.4 on topaz, inside", 1.61, 2.4, 0, 120, 1, 45, 's', false},
+      {"2.4 on topaz, inside", 1.61, 2.4, 0, 120, 1, 45, 'p', false},
+      {"0.42 + 2.4i on topaz", 1, 0.42, 2.4, 10, 1.61, 0, 'P', false},
+      {"0.42 + 2.4i on topaz, inside", 1.61, 0.42, 2.4, 10, 1, 0, 'P', false},
+      {"0.42 + 2.4i on topaz", 1, 0.42, 2.4, 10, 1.61, 0, 's', false},
+      {"0.42 + 2.4i on topaz, inside", 1.61, 0.42, 2.4, 10, 1, 0, 's', false},
+      {"water in air", 1, 1.33, 0, 100, 1, 0, 's', false},
+      {"water in air", 1, 1.33, 0, 5, 1, 0, 's', false},
+  };
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    for (double nm = rows[i].three ? 450 : 550; nm < (rows[i].three ? 700 : 600); nm += 100)
+      if (result == ABBE_OK) result = add_film(run, &rows[i], nm, error);
   return result;
 }

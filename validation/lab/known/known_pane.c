@@ -1,5 +1,5 @@
-/* Panes under a slanting beam: what they reflect and pass with all reflections inside, clear and
- * absorbing. */
+/* Panes under a slanting beam: what they reflect and pass with all reflections inside, clear,
+ * coated and absorbing. */
 #include "base/maths.h"
 #include "validation/lab/known/forms/closed_form.h"
 #include "validation/lab/known/known_light.h"
@@ -18,7 +18,7 @@
 typedef struct pane {
   const char *material;
   double lambda_nm, thickness, degrees, circle;
-  bool crystal; /* with its optic axis across the plane of incidence */
+  enum { PLAIN, CRYSTAL, COATED } kind; /* a crystal's axis is across the plane of incidence */
 } pane;
 
 static abbe_result load(const pane *p, abbe_scene *scene, abbe_error *error) {
@@ -39,7 +39,10 @@ static abbe_result load(const pane *p, abbe_scene *scene, abbe_error *error) {
       "- {name: pane, shape: box, size: [1, 1, %.17g], material: %s%s}\n"
       "- {name: below, shape: rectangle, width: 4, height: 4, reflectance: 0.5,\n"
       "   transform: [{translate: [0, 0, %.17g]}]}\n%s",
-      sin(angle), -cos(angle), p->thickness, p->material, p->crystal ? ", axis: [0, 1, 0]" : "",
+      sin(angle), -cos(angle), p->thickness, p->material,
+      p->kind == CRYSTAL  ? ", axis: [0, 1, 0]"
+      : p->kind == COATED ? ", coating: {layers: [[1.38, 1]], quarter: 550}"
+                          : "",
       -BELOW, upper);
 }
 
@@ -105,12 +108,19 @@ static abbe_result exact_of(const pane *p, const abbe_scene *scene, double *refl
                             double *passed, abbe_error *error) {
   const abbe_material *material = scene->object[0].material;
   double n = 0, angle = p->degrees / ABBE_KNOWN_DEGREES;
-  if (p->crystal) return exact_of_crystal(p, material, reflected, passed, error);
+  if (p->kind == CRYSTAL) return exact_of_crystal(p, material, reflected, passed, error);
   abbe_result result = abbe_material_n(material, p->lambda_nm, &n, error);
   if (result != ABBE_OK) return result;
   double slanted = p->thickness / cos(asin(sin(angle) / n));
   double tau = exp(-abbe_material_attenuation(material, p->lambda_nm) * slanted);
-  abbe_closed_form_slab(abbe_closed_form_fresnel(angle, n), tau, reflected, passed);
+  double face = abbe_closed_form_fresnel(angle, n);
+  if (p->kind == COATED) {
+    const abbe_closed_film film = {1, 1.38, 0, n, 550 / (4 * 1.38) / p->lambda_nm};
+    double r[2], t;
+    for (int k = 0; k < 2; k++) abbe_closed_form_film(&film, angle, k == 1, &r[k], &t);
+    face = (r[0] + r[1]) / 2; /* from inside too: nothing is absorbed */
+  }
+  abbe_closed_form_slab(face, tau, reflected, passed);
   return ABBE_OK;
 }
 
@@ -143,9 +153,9 @@ static abbe_result add_share(abbe_known_run *run, const pane *p, bool reflected,
                              .tolerance = abbe_known_sigmas(passes) * spread * scale + 1e-4,
                              .useful = 0.02 * (reflected ? r : t),
                              .reason = pane_reason};
-    abbe_number_format(row.quantity, sizeof row.quantity, "%s, %g mm, %g nm, at %g degrees, %s",
-                       p->material, 1e3 * p->thickness, p->lambda_nm, p->degrees,
-                       reflected ? "reflected" : "passed");
+    abbe_number_format(row.quantity, sizeof row.quantity, "%s%s, %g mm, %g nm, at %g degrees, %s",
+                       p->material, p->kind == COATED ? " under MgF2" : "", 1e3 * p->thickness,
+                       p->lambda_nm, p->degrees, reflected ? "reflected" : "passed");
     result = abbe_known_add(run, row, error);
   }
   abbe_rings_free(&rings);
@@ -163,28 +173,29 @@ typedef struct setting {
 #define D_LINE 587.5618
 
 static const setting clear[] = {
-    {{"n-bk7", D_LINE, 0.005, 0, 0.25, false}, false},
-    {{"n-bk7", D_LINE, 0.005, 30, 0.25, false}, true},
-    {{"n-bk7", D_LINE, 0.005, 30, 0.25, false}, false},
-    {{"n-bk7", D_LINE, 0.005, 60, 0.25, false}, true},
-    {{"n-bk7", D_LINE, 0.005, 60, 0.25, false}, false},
-    {{"diamond", D_LINE, 0.005, 0, 0.25, false}, false},
-    {{"diamond", D_LINE, 0.005, 30, 0.25, false}, true},
-    {{"diamond", D_LINE, 0.005, 30, 0.25, false}, false},
-    {{"diamond", D_LINE, 0.005, 60, 0.25, false}, true},
-    {{"diamond", D_LINE, 0.005, 60, 0.25, false}, false},
-    {{"calcite", D_LINE, 0.005, 0, 0.25, true}, false},
-    {{"calcite", D_LINE, 0.005, 60, 0.25, true}, true},
-    {{"calcite", D_LINE, 0.005, 60, 0.25, true}, false},
+    {{"n-bk7", D_LINE, 0.005, 0, 0.25, PLAIN}, false},
+    {{"n-bk7", D_LINE, 0.005, 30, 0.25, PLAIN}, true},
+    {{"n-bk7", D_LINE, 0.005, 30, 0.25, PLAIN}, false},
+    {{"n-bk7", D_LINE, 0.005, 60, 0.25, PLAIN}, true},
+    {{"n-bk7", D_LINE, 0.005, 60, 0.25, PLAIN}, false},
+    {{"diamond", D_LINE, 0.005, 0, 0.25, PLAIN}, false},
+    {{"diamond", D_LINE, 0.005, 30, 0.25, PLAIN}, true},
+    {{"diamond", D_LINE, 0.005, 30, 0.25, PLAIN}, false},
+    {{"diamond", D_LINE, 0.005, 60, 0.25, PLAIN}, true},
+    {{"diamond", D_LINE, 0.005, 60, 0.25, PLAIN}, false},
+    {{"calcite", D_LINE, 0.005, 0, 0.25, CRYSTAL}, false},
+    {{"calcite", D_LINE, 0.005, 60, 0.25, CRYSTAL}, true},
+    {{"calcite", D_LINE, 0.005, 60, 0.25, CRYSTAL}, false},
+    {{"n-bk7", D_LINE, 0.005, 60, 0.25, COATED}, true},
 };
 static const setting absorbing[] = {
-    {{"n-sf11", 546, 0.02, 0, 0.25, false}, false},
-    {{"n-sf11", 436, 0.02, 0, 0.25, false}, false},
-    {{"n-sf11", 400, 0.02, 0, 0.25, false}, false},
-    {{"n-sf11", 400, 0.02, 45, 0.25, false}, false},
-    {{"n-sf11", 400, 0.1, 0, 0.25, false}, false},
-    {{"tourmaline-green", 640, 0.02, 0, 0.25, true}, false},
-    {{"tourmaline-green", 640, 0.02, 45, 0.25, true}, false},
+    {{"n-sf11", 546, 0.02, 0, 0.25, PLAIN}, false},
+    {{"n-sf11", 436, 0.02, 0, 0.25, PLAIN}, false},
+    {{"n-sf11", 400, 0.02, 0, 0.25, PLAIN}, false},
+    {{"n-sf11", 400, 0.02, 45, 0.25, PLAIN}, false},
+    {{"n-sf11", 400, 0.1, 0, 0.25, PLAIN}, false},
+    {{"tourmaline-green", 640, 0.02, 0, 0.25, CRYSTAL}, false},
+    {{"tourmaline-green", 640, 0.02, 45, 0.25, CRYSTAL}, false},
 };
 
 enum { CLEAR = sizeof clear / sizeof *clear, ABSORBING = sizeof absorbing / sizeof *absorbing };

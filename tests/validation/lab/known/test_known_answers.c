@@ -35,9 +35,9 @@ TEST(single_rays_meet_the_closed_forms) {
   static const struct {
     const char *group;
     size_t rows;
-  } groups[] = {{"prism", 13}, {"slit", 8},     {"ball", 10},    {"nest", 7},
-                {"slab", 7},   {"fresnel", 14}, {"crystal", 22}, {"rainbow", 6}};
-  for (int g = 0; g < 8; g++) {
+  } groups[] = {{"prism", 13},   {"slit", 8},  {"ball", 10},    {"nest", 7},   {"slab", 7},
+                {"fresnel", 14}, {"film", 33}, {"crystal", 22}, {"rainbow", 6}};
+  for (int g = 0; g < 9; g++) {
     OWNED(abbe_known_answers, a) = make(groups[g].group);
     check_rows(&a);
     assert_int_equal(a.count, groups[g].rows);
@@ -58,6 +58,12 @@ TEST(the_exact_column_is_the_books) {
   abbe_known_answers_free(&a);
   a = make("crystal");
   assert_near(find(&a, "calcite, axis at 45 degrees, between its rays")->exact, 6.2, 0.05);
+  abbe_known_answers_free(&a);
+  a = make("film");
+  assert_near(find(&a, "MgF2 on crown, 99.64 nm, reflected at 0 degrees, 550 nm")->exact, 0.0126008,
+              5e-8);
+  assert_near(find(&a, "0.42 + 2.4i on topaz, inside, 10 nm, passed at 0 degrees, 550 nm")->exact,
+              0.7295517, 5e-8);
   abbe_known_answers_free(&a);
   a = make("fresnel");
   assert_near(find(&a, "diamond, critical angle at d")->exact, 24.43, 0.01);

@@ -36,6 +36,7 @@ static void check_setting(setting_maker make, size_t index, bool other, size_t r
 TEST(panes_reflect_pass_and_absorb) {
   check_setting(abbe_known_pane_setting, 3, false, 1);  /* reflected at 60 degrees */
   check_setting(abbe_known_pane_setting, 11, false, 1); /* of a crystal */
+  check_setting(abbe_known_pane_setting, 13, false, 1); /* under a film */
   check_setting(abbe_known_pane_setting, 3, true, 1);   /* what absorbing glass leaves, aslant */
 }
 
@@ -51,7 +52,7 @@ TEST(settings_end) {
     bool other;
   } beyond[] = {{abbe_known_sphere_setting, 20, false},
                 {abbe_known_sphere_setting, 3, true},
-                {abbe_known_pane_setting, 13, false},
+                {abbe_known_pane_setting, 14, false},
                 {abbe_known_pane_setting, 7, true},
                 {make_picture, 3, false}};
   for (int i = 0; i < 5; i++) {

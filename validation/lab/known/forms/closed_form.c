@@ -67,6 +67,23 @@ void abbe_closed_form_slab(double r, double tau, double *reflected, double *pass
   *reflected = r + once * r * tau / again;
 }
 
+void abbe_closed_form_film(const abbe_closed_film *film, double incidence, bool p,
+                           double *reflected, double *passed) {
+  const double complex index[3] = {film->from, film->n + film->k * I, film->to};
+  const double kappa = film->from * sin(incidence);
+  double complex q[3], y[3];
+  for (int i = 0; i < 3; i++) {
+    q[i] = csqrt(index[i] * index[i] - kappa * kappa);
+    y[i] = p ? q[i] / (index[i] * index[i]) : q[i];
+  }
+  const double complex first = (y[0] - y[1]) / (y[0] + y[1]), last = (y[1] - y[2]) / (y[1] + y[2]);
+  const double complex cross = cexp(2 * acos(-1) * I * film->waves * q[1]);
+  const double complex again = 1 + first * last * cross * cross;
+  const double complex t = 4 * y[0] * y[1] / ((y[0] + y[1]) * (y[1] + y[2])) * cross / again;
+  *reflected = pow(cabs((first + last * cross * cross) / again), 2);
+  *passed = creal(y[2]) / creal(y[0]) * pow(cabs(t), 2);
+}
+
 double abbe_closed_form_slab_shift(double thickness, double incidence, double n) {
   double s = sin(incidence);
   return thickness * s * (1 - cos(incidence) / sqrt(n * n - s * s));

@@ -36,6 +36,16 @@ double abbe_closed_form_penumbra(double at);
  * incoherently: r of one face, tau what one crossing leaves. [BornWolf1999, 1.5.4] */
 void abbe_closed_form_slab(double r, double tau, double *reflected, double *passed);
 
+/* A film of index n + i k between clear media; `waves`: its thickness in vacuum wavelengths. */
+typedef struct abbe_closed_film {
+  double from, n, k, to, waves;
+} abbe_closed_film;
+
+/* Shares of s, or p, that it reflects and passes, by the sum of what goes to and fro in it.
+ * [BornWolf1999, 1.6.4] */
+void abbe_closed_form_film(const abbe_closed_film *film, double incidence, bool p,
+                           double *reflected, double *passed);
+
 /* How far a slab of that thickness moves a ray sideways, at right angles to it. [BornWolf1999] */
 double abbe_closed_form_slab_shift(double thickness, double incidence, double n);
 
