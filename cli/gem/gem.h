@@ -26,7 +26,7 @@
   X(optimise, "the crown and pavilion angles that do best in a stone, meets kept")                 \
   X(convert, "a design as .asc, .gem or .gcs, or as a solid: STL, OBJ, glTF")
 
-/* The pairs of one search by several processes (validation/measure/gem/ranked_optimum.h); rank 0
+/* The pairs of one search by several processes (validation/lab/ranked_optimum.h); rank 0
  * writes and says what came of it. Gives the exit code. */
 int abbe_gem_optimise_by_ranks(int argc, char **argv, abbe_rank_job *job);
 

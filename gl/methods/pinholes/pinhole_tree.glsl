@@ -1,5 +1,5 @@
 // The tree of pinholes (scenes/samples/sample_tree.h), as a texel goes down in it.
-uniform samplerBuffer pinhole_nodes;  // rows as gl/pinholes/pinhole_samples.h has them
+uniform samplerBuffer pinhole_nodes;  // rows as gl/methods/pinholes/pinhole_samples.h has them
 uniform int node_count;
 uniform float cluster_share;  // share of a hemisphere's light that a cluster may send at the most; 0: there are none
 const float NEAR_AREAS = 6.0;  // samples nearer than the root of so many times their area are taken by parts

@@ -1,5 +1,5 @@
 // Samples of surfaces as pinholes through which receivers see what is around [WandStrasser2003]; rows as
-// gl/pinholes/pinhole_samples.h has them.
+// gl/methods/pinholes/pinhole_samples.h has them.
 uniform samplerBuffer pinholes;
 #include "pinhole_sky.glsl"
 

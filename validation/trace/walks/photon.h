@@ -43,7 +43,7 @@ typedef struct abbe_photon_hit {
 } abbe_photon_hit;
 
 /* Where the light of the photons went: W, each wavelength with its share of Y. The words are those
- * of the renderer's ledger (gl/statistics.h). */
+ * of the renderer's ledger (gl/device/statistics.h). */
 typedef struct abbe_light_ledger {
   double reached;   /* brought to a refractor, before anything else */
   double deposited; /* on receivers */
