@@ -117,7 +117,8 @@ static void read_folds(reading *r, char *at) {
   const char *end;
   double folds;
   at = skip_blanks(at);
-  if (!abbe_number_read(at, &end, &folds) || !(folds >= 0 && folds <= MOST_FOLDS)) {
+  if (!abbe_number_read(at, &end, &folds) || !(folds >= 0 && folds <= MOST_FOLDS) ||
+      folds != floor(folds)) {
     NOTE(r, ABBE_NOTE_SKIPPED, "the symmetry '%.40s' is no number of folds", at);
     return;
   }

@@ -60,6 +60,7 @@ TEST(odd_lines_are_met) {
   assert_near(cut.facet[4].index, 12, 0);
   expect_notes(CUBE, "96 teeth are assumed", "");
   expect_notes("g 96 0\ng 96 0\nweather is fine\n" CUBE, "the last one holds", "weather");
+  expect_notes("g 96 0\ny -8 y\ny 8.5 n\n" CUBE, "'-8 y'", "'8.5 n' is no number of folds");
   expect_notes("g 96 0\na 30 -4 96 what n\n" CUBE, "magnitude", "'what'");
   expect_notes("g 96 0\nI 0.5\nH 1\nH 2\nH 3\nH 4\nH five\n" CUBE, "index of 0.5", "five");
 }
