@@ -22,7 +22,6 @@ static const struct {
     {"diamond", "ball", "layers", "balanced", "stone", "light", BY_LAYERS},
     {"diamond", "ball", "layers", "balanced", "caustic", "light", BY_LAYERS},
     {"diamond", "haze", "default", "balanced", "stone", "light", OF_A_SAMPLE},
-    {"diamond", "haze", "default", "balanced", "caustic", "light", OF_A_DRAFT},
     {"diamond", "water", "default", "moving", "caustic", "light", OF_A_DRAFT},
     {"ruby", "water", "pinhole", "balanced", "stone", "light", OF_BALANCED},
     {"ruby", "water", "pinhole", "balanced", "caustic", "light", OF_BALANCED},
