@@ -15,6 +15,9 @@
 #define OF_A_DRAFT                                                                                 \
   "48 photons a side and a map of 128 texels blur what is dark beside what is bright"
 #define OF_BALANCED "of the settings of 'balanced'; by those of 'accurate' it is right"
+#define OF_DIRECTIONS                                                                              \
+  "the volume's crystal absorbs by the light's direction; the traces here have the mean over its " \
+  "axes, as the renderer has"
 static const struct {
   const char *stone, *company, *transport, *stage, *region, *what, *why;
 } known[] = {
@@ -25,6 +28,9 @@ static const struct {
     {"diamond", "water", "default", "moving", "caustic", "light", OF_A_DRAFT},
     {"ruby", "water", "pinhole", "balanced", "stone", "light", OF_BALANCED},
     {"ruby", "water", "pinhole", "balanced", "caustic", "light", OF_BALANCED},
+    {"ruby", "alone", "volume", "balanced", "caustic", "hue", OF_DIRECTIONS},
+    {"ruby", "alone", "volume", "balanced", "caustic", "light", OF_DIRECTIONS},
+    {"emerald", "alone", "volume", "accurate", "caustic", "hue", OF_DIRECTIONS},
 };
 
 static void name_of(const cover_row *row, char *out, size_t size) {
