@@ -1,4 +1,4 @@
-// What a light or the camera looks through; the float version of gl/view.h.
+// What a light or the camera looks through; the float version of scenes/view/view.h.
 
 // A frustum from one point (perspective: origin.w = 1) or along one direction (0). window is
 // left, right, bottom, top: tangents on the plane at distance 1, or metres. range is near, far.
