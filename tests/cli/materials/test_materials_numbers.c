@@ -87,7 +87,7 @@ TEST(metals_are_told_by_n_and_k) {
               1.8 * cJSON_GetArrayItem(colour, 2)->valuedouble);
   assert_null(cJSON_GetObjectItem(json, "v_d"));
   answers("$abbe materials list --name gold --columns name,n_d,v_d,model", 0,
-          "gold    -    -  conductor");
+          "gold             -    -  conductor");
   answers("$abbe materials plot gold n-bk7 -o metal.svg && grep -c 'gold, k\\|svg' metal.svg >&2; "
           "rm metal.svg",
           0, "");
