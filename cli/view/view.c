@@ -221,8 +221,8 @@ int abbe_command_view(int argc, char **argv) {
       "SCENE.yaml\nSTONE.asc...",
       "Shows a scene in a window: turn it, change it, and see the light follow.\v"
       "Left drag turns, middle drag or shift moves, the wheel goes nearer, right drag\n"
-      "looks about, and w a s d q e fly meanwhile. Drag a ring to move a lamp or a\n"
-      "stone: shift upright, control tilts. Click for a pixel's spectrum.\n"
+      "looks about, and w a s d q e fly meanwhile. Drag a ring to move a lamp or an\n"
+      "object: shift upright, control tilts, g drops. Click for a pixel's spectrum.\n"
       "b: rendered or traced, v: their difference, + -: exposure, control z and y: back\n"
       "and forth, control s: keep, t: turntable.\n\n"
       "Examples:\n"

@@ -221,37 +221,89 @@ static void read_values(abbe_yaml *yaml, abbe_yaml_node node, const abbe_object 
   }
 }
 
-/* The object that was read from that line on, where it is the only one of it. */
-static const abbe_object *object_at(const abbe_scene *scene, size_t line) {
-  const abbe_object *found = NULL;
-  for (size_t i = 0; i < scene->object_count; i++) {
-    if (scene->object[i].line != line) continue;
-    if (found != NULL) return NULL;
-    found = &scene->object[i];
+/* The first of the scene's objects that item i is: a stone, its crossing parts and its setting.
+ * Items of one line are not told apart. */
+static const abbe_object *objects_of(const abbe_scene *scene, abbe_yaml *yaml, abbe_yaml_node list,
+                                     size_t i, size_t *count) {
+  const size_t line = abbe_yaml_line(yaml, abbe_yaml_item(yaml, list, i));
+  const abbe_object *first = NULL;
+  *count = 0;
+  for (size_t k = 0; k < abbe_yaml_count(yaml, list); k++)
+    if (k != i && abbe_yaml_line(yaml, abbe_yaml_item(yaml, list, k)) == line) return NULL;
+  for (size_t k = 0; k < scene->object_count; k++) {
+    if (scene->object[k].line != line) continue;
+    if (first == NULL) first = &scene->object[k];
+    ++*count;
   }
-  return found;
+  return first;
+}
+
+static void find_bounds(const abbe_object *object, size_t count, abbe_view_object *out) {
+  double min[3], max[3], size[3];
+  memcpy(min, object->min, sizeof min);
+  memcpy(max, object->max, sizeof max);
+  for (size_t i = 1; i < count && !object[i].holds; i++)
+    for (int k = 0; k < 3; k++) {
+      min[k] = fmin(min[k], object[i].min[k]);
+      max[k] = fmax(max[k], object[i].max[k]);
+    }
+  for (int k = 0; k < 3; k++) out->middle[k] = 0.5 * (min[k] + max[k]);
+  abbe_vector_subtract(max, min, size);
+  out->radius = 0.5 * abbe_vector_length(size);
+}
+
+/* How high the parallelogram is at a place, by x and y; false where it is upright or elsewhere. */
+static bool height_at(const double p[9], const double at[3], double *out) {
+  const double *u = p + 3, *v = p + 6, x = at[0] - p[0], y = at[1] - p[1];
+  const double area = u[0] * v[1] - u[1] * v[0];
+  const double a = (x * v[1] - y * v[0]) / area, b = (u[0] * y - u[1] * x) / area;
+  *out = p[2] + a * u[2] + b * v[2];
+  return fabs(area) > 1e-3 * abbe_vector_length(u) * abbe_vector_length(v) && a >= 0 && a <= 1 &&
+         b >= 0 && b <= 1;
+}
+
+/* From the highest flat receiver below its middle to its underside. */
+static double height_above(const abbe_scene *scene, const abbe_object *object, size_t count,
+                           const double middle[3]) {
+  const double *top = NULL;
+  double best = -INFINITY, least = INFINITY, z = 0;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *o = &scene->object[i];
+    if (o->material != NULL || o->mirror || o->line == object->line) continue;
+    for (size_t k = 0; k < o->exact.count && o->exact.kind == ABBE_EXACT_PARALLELOGRAMS; k++) {
+      const double *p = o->exact.parallelogram[k];
+      if (!height_at(p, middle, &z) || z <= best || z > middle[2]) continue;
+      best = z;
+      top = p;
+    }
+  }
+  for (size_t i = 0; top != NULL && i < count; i++)
+    for (size_t v = 0; v < object[i].mesh.vertex_count; v++) {
+      height_at(top, object[i].mesh.position[v], &z);
+      least = fmin(least, object[i].mesh.position[v][2] - z);
+    }
+  return top != NULL ? least : NAN;
 }
 
 static void make_object(abbe_yaml *yaml, abbe_yaml_node list, size_t i, const abbe_scene *scene,
                         abbe_view_outline *outline) {
   const abbe_yaml_node node = abbe_yaml_item(yaml, list, i);
-  const abbe_object *object = object_at(scene, abbe_yaml_line(yaml, node));
+  size_t count;
+  const abbe_object *object = objects_of(scene, yaml, list, i, &count);
   abbe_view_object *out = &outline->object[outline->object_count];
-  double half[3];
   *out = (abbe_view_object){0};
   if (object == NULL) return;
-  for (int k = 0; k < 3; k++) {
-    out->middle[k] = 0.5 * (object->min[k] + object->max[k]);
-    half[k] = 0.5 * (object->max[k] - object->min[k]);
-  }
+  find_bounds(object, count, out);
   if (!read_transform(yaml, node, object, out)) return;
   key_of(yaml, "objects", list, i, out->key);
   snprintf(out->name, sizeof out->name, "%.79s", object->name);
   const abbe_material *material = object->mirror ? object->conductor : object->material;
   out->mirror = object->mirror;
   out->bends = object->mirror || material != NULL;
+  out->thick =
+      out->bends || object->exact.kind != ABBE_EXACT_PARALLELOGRAMS || object->exact.count > 1;
   if (material != NULL) snprintf(out->material, sizeof out->material, "%.79s", material->name);
-  out->radius = abbe_vector_length(half);
+  out->above = height_above(scene, object, count, out->middle);
   out->scene_index = (size_t)(object - scene->object);
   read_values(yaml, node, object, out);
   outline->object_count++;
@@ -329,6 +381,13 @@ bool abbe_view_outline_transform(const abbe_view_object *object, double tilt_rad
   return n > 0 && (size_t)n < size;
 }
 
+/* Takes over the steps before the last one, by which it rises; tilted it has another underside. */
+static void set_before(abbe_view_object *object, char *before, double rises) {
+  object->above = strcmp(before, object->before) == 0 ? object->above + rises : NAN;
+  free(object->before);
+  object->before = before;
+}
+
 /* As a value of abbe_view_outline_transform says; false for another. */
 static bool place(abbe_view_object *object, const char *transform) {
   static const char word[] = "{translate: [";
@@ -343,8 +402,7 @@ static bool place(abbe_view_object *object, const char *transform) {
   const size_t length = last > transform + 2 ? (size_t)(last - transform) - 3 : 0;
   char *before = strndup(transform + 1, length);
   if (before == NULL) return false;
-  free(object->before);
-  object->before = before;
+  set_before(object, before, to[2] - object->translate[2]);
   for (int k = 0; k < 3; k++) object->middle[k] += to[k] - object->translate[k];
   memcpy(object->translate, to, sizeof to);
   return true;
@@ -353,8 +411,7 @@ static bool place(abbe_view_object *object, const char *transform) {
 static void place_own(abbe_view_object *object) {
   char *before = object->own_before != NULL ? strdup(object->own_before) : NULL;
   if (before == NULL) return;
-  free(object->before);
-  object->before = before;
+  set_before(object, before, object->own_middle[2] - object->middle[2]);
   memcpy(object->translate, object->own_translate, sizeof object->translate);
   memcpy(object->middle, object->own_middle, sizeof object->middle);
 }

@@ -38,10 +38,12 @@ typedef struct abbe_view_light {
 typedef struct abbe_view_object {
   char name[ABBE_VIEW_NAME], key[ABBE_VIEW_KEY]; /* "objects.gem" */
   bool bends;                                    /* light: it is a refractor or a mirror */
+  bool thick;                                    /* it is no flat receiver, such as a table */
   bool mirror;
   char material[ABBE_VIEW_NAME]; /* or metal; "": of none */
-  size_t scene_index;            /* index of the scene's object */
-  double middle[3], radius;      /* bounds, m */
+  size_t scene_index;            /* index of the scene's object, the first of what it is made of */
+  double middle[3], radius;      /* bounds, m, without the metal around it */
+  double above; /* m, from the flat receiver below it to its underside; NaN: not known */
   /* How it was put there, as one line of YAML without brackets, but for a last `translate`; and
    * that. Where the file fits or centres it, which would undo other steps, these are steps too, and
    * whoever sets the transform takes the keys out. */

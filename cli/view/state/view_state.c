@@ -127,6 +127,7 @@ void abbe_view_state_settings(abbe_view_state *state, size_t wavelengths, size_t
 static void leave_scene(abbe_view_state *state) {
   abbe_view_outline_free(&state->outline);
   state->picked = false;
+  state->was_held = (abbe_view_handle){0};
 }
 
 void abbe_view_state_open(abbe_view_state *state, const char *path, double now_s) {
@@ -244,7 +245,7 @@ bool abbe_view_state_handle(const abbe_view_state *state, size_t i, abbe_view_ha
   for (size_t n = 0; n < o->light_count + o->object_count; n++) {
     const bool light = n < o->light_count;
     const size_t at = light ? n : n - o->light_count;
-    if (light ? !o->light[at].placed : !o->object[at].bends) continue;
+    if (light ? !o->light[at].placed : !o->object[at].thick) continue;
     *out = (abbe_view_handle){light ? ABBE_VIEW_LIGHT_HANDLE : ABBE_VIEW_OBJECT_HANDLE, at, {0, 0}};
     const bool pulled = state->dragged && held->kind == out->kind && held->index == at;
     if (!abbe_view_camera_project(&state->pictured, state->width, state->height,
@@ -337,6 +338,28 @@ static void pull(abbe_view_state *state, double now_s) {
   set_object(state, object, 0, point, point, now_s);
 }
 
+static bool any_down(const abbe_view_state *state) {
+  return state->down[0] || state->down[1] || state->down[2];
+}
+
+void abbe_view_state_set_down(abbe_view_state *state, size_t index, double now_s) {
+  const abbe_view_object *object = &state->outline.object[index];
+  double to[3];
+  if (index >= state->outline.object_count || any_down(state)) return;
+  if (!isfinite(object->above)) {
+    snprintf(state->refusal, sizeof state->refusal,
+             "'%.70s' is not dropped: nothing flat that receives light is known below it",
+             object->name);
+    return;
+  }
+  memcpy(to, object->translate, sizeof to);
+  to[2] -= object->above;
+  state->continued = false;
+  set_object(state, object, 0, to, to, now_s);
+  state->continued = false;
+  abbe_view_outline_stand(&state->outline, abbe_view_history_now(&state->history));
+}
+
 /* ---- pointer and keys ---- */
 
 void abbe_view_state_press(abbe_view_state *state, abbe_view_button button, double x, double y,
@@ -352,10 +375,6 @@ void abbe_view_state_press(abbe_view_state *state, abbe_view_button button, doub
   if (button == ABBE_VIEW_LEFT) state->held = abbe_view_state_handle_at(state, x, y);
   if (state->held.kind != ABBE_VIEW_NO_HANDLE) take_hold(state);
   abbe_view_refine_hold(&state->refine, true, now_s);
-}
-
-static bool any_down(const abbe_view_state *state) {
-  return state->down[0] || state->down[1] || state->down[2];
 }
 
 void abbe_view_state_move(abbe_view_state *state, double x, double y, double now_s) {
@@ -380,6 +399,7 @@ void abbe_view_state_release(abbe_view_state *state, abbe_view_button button, do
   if (state->dragged)
     abbe_view_outline_stand(&state->outline, abbe_view_history_now(&state->history));
   state->continued = false;
+  if (state->held.kind == ABBE_VIEW_OBJECT_HANDLE) state->was_held = state->held;
   state->held = (abbe_view_handle){0};
   memset(state->fly, 0, sizeof state->fly);
   abbe_view_refine_hold(&state->refine, false, now_s);
@@ -415,6 +435,14 @@ bool abbe_view_state_key(abbe_view_state *state, int key, bool down, int modifie
   case 'v':
     state->shown = state->shown == ABBE_VIEW_DIFFERENCE_PICTURE ? ABBE_VIEW_RENDERED_PICTURE
                                                                 : ABBE_VIEW_DIFFERENCE_PICTURE;
+    return true;
+  case 'g': /* what was held last, else the first that has a ring */
+    for (size_t i = 0; state->was_held.kind == ABBE_VIEW_NO_HANDLE; i++) {
+      if (i >= state->outline.object_count) return false;
+      if (state->outline.object[i].thick)
+        state->was_held = (abbe_view_handle){ABBE_VIEW_OBJECT_HANDLE, i, {0, 0}};
+    }
+    abbe_view_state_set_down(state, state->was_held.index, now_s);
     return true;
   case '+':
     state->exposure = fmin(state->exposure + 0.5, 20);

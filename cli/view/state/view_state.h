@@ -5,7 +5,8 @@
  * draws nothing and reads no files. The left button turns the camera around its target, on a handle
  * it moves the light or the object; a click requests a pixel's spectrum. The middle button, or
  * the left one with shift, pans, the right one looks about, and while it is down w, a, s, d, q and
- * e fly. Shift makes a handle move upright, control tilts an object. Internal to cli/.
+ * e fly. Shift makes a handle move upright, control tilts an object, g drops the one that was held
+ * last. Internal to cli/.
  */
 #ifndef ABBE_CLI_VIEW_STATE_VIEW_STATE_H
 #define ABBE_CLI_VIEW_STATE_VIEW_STATE_H
@@ -67,11 +68,11 @@ typedef struct abbe_view_state {
   bool dragged, continued; /* the pointer has left that place; the step is begun */
   uint64_t turned;         /* the change that was the wheel's last turn */
   int modifiers;
-  abbe_view_handle held;
-  double held_point[3]; /* where it stood when it was taken, */
-  double pulled[3];     /* and stands in the last scene that was learnt since */
-  double fly[3];        /* right, up, forward: -1, 0 or 1 */
-  bool picked;          /* a pixel is: */
+  abbe_view_handle held, was_held; /* now; last, an object or none yet */
+  double held_point[3];            /* where it stood when it was taken, */
+  double pulled[3];                /* and stands in the last scene that was learnt since */
+  double fly[3];                   /* right, up, forward: -1, 0 or 1 */
+  bool picked;                     /* a pixel is: */
   size_t pixel[2];
   abbe_view_shown shown;
   double exposure;    /* stops */
@@ -103,6 +104,9 @@ void abbe_view_state_tick(abbe_view_state *state, double seconds, double now_s);
 /* A value of the scene, as a slider or a picker sets it; `continued`: as the one before. */
 void abbe_view_state_set(abbe_view_state *state, const char *key, const char *value, bool continued,
                          double now_s);
+/* Lets an object of the outline down, or lifts it, onto the flat receiver below it, as a step;
+ * where there is none, or it was tilted just now, the refusal says so. */
+void abbe_view_state_set_down(abbe_view_state *state, size_t object, double now_s);
 /* Wavelengths, photons and the map's side; 0: by the stage. */
 void abbe_view_state_settings(abbe_view_state *state, size_t wavelengths, size_t photons,
                               size_t map_size, bool continued, double now_s);

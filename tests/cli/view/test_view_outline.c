@@ -148,13 +148,13 @@ TEST(what_was_undone_stands_at_once) {
 }
 
 /* One brick, put where it is in four ways: by steps alone, by `fit`, by `centre`, by both. */
+#define BRICK "material: n-bk7, shape: box, "
 static const char *const brick[] = {
-    "shape: box, size: [0.02, 0.01, 0.006], transform: [{translate: [0.005, 0, 0.1]}]",
-    "shape: box, size: [20, 10, 6], fit: 0.02, transform: [{translate: [5, 0, 100]}]",
-    "shape: box, size: [0.02, 0.01, 0.006], centre: [0.005, 0, 0.1], transform: [{translate: [0, "
-    "3, 0]}]",
-    "shape: box, size: [20, 10, 6], transform: [{translate: [700, 0, 0]}], fit: 0.02, centre: "
-    "[0.005, 0, 0.1]"};
+    BRICK "size: [0.02, 0.01, 0.006], transform: [{translate: [0.005, 0, 0.1]}]",
+    BRICK "size: [20, 10, 6], fit: 0.02, transform: [{translate: [5, 0, 100]}]",
+    BRICK "size: [0.02, 0.01, 0.006], centre: [0.005, 0, 0.1], transform: [{translate: [0, 3, 0]}]",
+    BRICK "size: [20, 10, 6], transform: [{translate: [700, 0, 0]}], fit: 0.02, centre: [0.005, 0, "
+          "0.1]"};
 enum { BRICKS = sizeof brick / sizeof *brick };
 
 static void begin_with_object(abbe_view_state *s, const char *text) {
@@ -163,7 +163,7 @@ static void begin_with_object(abbe_view_state *s, const char *text) {
   assert_true(file >= 0);
   dprintf(file,
           "camera: {eye: [0, -0.5, 0.3], target: [0, 0, 0.1], size: [32, 32]}\n"
-          "environment: {uniform: 1}\nobjects:\n- {name: it, %s, material: n-bk7}\n"
+          "environment: {uniform: 1}\nobjects:\n- {name: it, %s}\n"
           "- {name: floor, shape: rectangle, width: 1, height: 1, reflectance: 0.5}\n",
           text);
   close(file);
@@ -216,10 +216,54 @@ TEST(what_is_fitted_or_centred_is_led_as_all) {
   }
 }
 
+/* A stone with its setting, receivers, and a mirror: each is dragged, tilted and dropped on the
+ * table, which has no ring. */
+TEST(every_object_is_dragged_tilted_and_dropped) {
+  static const char *const object[] = {
+      "shape: brilliant, diameter: 0.01, stand: [0, 0, 0.1], material: diamond, setting: {kind: "
+      "prongs, metal: gold}",
+      "shape: box, size: [0.02, 0.01, 0.006], centre: [0, 0, 0.1], reflectance: 0.4",
+      "shape: sphere, radius: 0.01, transform: [{translate: [0, 0, 0.1]}], reflectance: 0.4",
+      "shape: sphere, radius: 0.01, centre: [0, 0, 0.1], mirror: gold",
+  };
+  static abbe_view_state s;
+  const abbe_view_object *it = &s.outline.object[0];
+  abbe_view_handle handle;
+  double xy[2];
+  for (size_t i = 0; i < sizeof object / sizeof *object; i++) {
+    begin_with_object(&s, object[i]);
+    assert_int_equal(s.outline.object_count, 2);
+    assert_true(abbe_view_state_handle(&s, 0, &handle));
+    assert_false(abbe_view_state_handle(&s, 1, &handle));
+    assert_true(it->above > 0.08);
+    assert_true(abbe_view_camera_project(&s.camera, 512, 512, it->middle, xy));
+    drag(&s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0] + 60, xy[1], 0);
+    learn(&s);
+    assert_true(it->middle[0] > 0.01);
+    assert_true(abbe_view_camera_project(&s.camera, 512, 512, it->middle, xy));
+    drag(&s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0] + 30, xy[1] + 80, ABBE_VIEW_CONTROL);
+    assert_true(isnan(it->above)); /* what is undermost now is not known */
+    assert_true(abbe_view_state_key(&s, 'g', true, 0, 3));
+    assert_contains(s.refusal, "'it' is not dropped");
+    learn(&s);
+    const double before = it->middle[2], above = it->above;
+    assert_true(abbe_view_state_key(&s, 'g', true, 0, 4));
+    assert_int_equal(s.history.count, 4);
+    assert_near(it->above, 0, 1e-6);
+    learn(&s);
+    assert_near(it->above, 0, 1e-6);
+    assert_near(it->middle[2], before - above, 1e-6);
+    assert_string_equal(s.refusal, "");
+    assert_true(abbe_view_state_undo(&s, 5));
+    assert_near(it->above, above, 1e-6);
+    end_with_object(&s);
+  }
+}
+
 /* Of what is fitted the radius sets nothing, and `fit` the size. */
 TEST(what_is_fitted_is_sized_by_its_longest_side) {
   static abbe_view_state s;
-  begin_with_object(&s, "shape: sphere, radius: 7, levels: 1, fit: 0.02");
+  begin_with_object(&s, "material: n-bk7, shape: sphere, radius: 7, levels: 1, fit: 0.02");
   const abbe_view_object *ball = &s.outline.object[0];
   assert_int_equal(ball->value_count, 1);
   assert_string_equal(ball->value[0].key, "objects.it.fit");
