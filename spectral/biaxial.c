@@ -239,11 +239,13 @@ static void crystal_roots(const side_medium *f, root all[4]) {
     all[i] = (root){.z = z[i], .fast = misses(f, z[i], true) <= misses(f, z[i], false)};
     for (int j = 0; j < i; j++)
       if (cabs(z[i] - z[j]) < 1e-4 && all[j].fast == all[i].fast) {
-        /* both sheets are here: the pair takes one each, as fits better */
+        /* The quartic is the product of both sheets, so two roots on one leave the other by more
+         * than the root of rounding. Else both sheets are here: the pair takes one each, as fits
+         * better. */
         const bool fast = all[i].fast;
         const double kept = misses(f, z[j], fast) + misses(f, z[i], !fast),
                      swapped = misses(f, z[j], !fast) + misses(f, z[i], fast);
-        if (!(fmin(kept, swapped) < 1e-4)) continue;
+        if (!(fmin(kept, swapped) < 1e-6)) continue;
         all[i].fast = kept <= swapped ? !fast : fast;
         all[j].fast = kept <= swapped ? fast : !fast;
       }
@@ -277,16 +279,18 @@ static void crystal_wave(const side_medium *f, const root *r, wave *w) {
   finish_wave(w);
 }
 
-/* Takes of the second what carries energy together with the first: where both have one wave vector
- * any two waves are right, and energy adds up for those. */
+/* Two waves of a clear medium carry no energy together. Their directions are known to rounding over
+ * the distance of their wave vectors, and where these are one any two are right: the wave of less
+ * flux is rid of what carries energy together with the other. */
 static void part_pair(wave w[2]) {
-  if (!w[0].travels || !w[1].travels || cabs(w[0].k[2] - w[1].k[2]) > 1e-7) return;
-  const number *e = w[0].e, *h = w[0].h, *other = w[1].e, *its = w[1].h;
+  if (!w[0].travels || !w[1].travels) return;
+  wave *more = &w[fabs(w[1].flux) > fabs(w[0].flux)], *less = more == w ? w + 1 : w;
+  const number *e = more->e, *h = more->h, *other = less->e, *its = less->h;
   const number shared =
       conj(e[0]) * its[1] - conj(e[1]) * its[0] + other[0] * conj(h[1]) - other[1] * conj(h[0]);
-  const number part = shared / (2 * w[0].flux);
-  for (int k = 0; k < 3; k++) w[1].e[k] -= part * w[0].e[k];
-  finish_wave(&w[1]);
+  const number part = shared / (2 * more->flux);
+  for (int k = 0; k < 3; k++) less->e[k] -= part * more->e[k];
+  finish_wave(less);
 }
 
 /* First those that leave to the side of n. */

@@ -259,6 +259,21 @@ TEST(energy_is_conserved) {
   if (!(worst < 1e-7)) fail_msg("energy is off by up to %g", worst);
 }
 
+/* Beside an optic axis one sheet is a cone that the normal's line may cut twice, 5e-5 from the
+ * other sheet. */
+TEST(a_line_cuts_one_sheet_twice) {
+  const abbe_biaxial a = {{1.5854431039481225, 2.0921986136783981, 1.255409664203319},
+                          {{-0.76568079320346594, 0.48003479515317465, -0.42813493008812159},
+                           {0.63140726640082845, 0.43394997132409846, -0.64266031954995273},
+                           {-0.12271017421365008, -0.76240016909105135, -0.63536461603900474}}};
+  const double in[3] = {0.75678215138145233, 0.64205317696124842, -0.12267230047744471};
+  for (int mode = 0; mode < 2; mode++) {
+    abbe_biaxial_split s;
+    abbe_biaxial_meet(&a, &sphene, up, (abbe_biaxial_mode)mode, in, NULL, &s);
+    assert_near(total(&s), 1, 1e-9);
+  }
+}
+
 /* What enters as one wave by one ray comes back by the same ray with the same share. */
 TEST(ways_back_have_the_same_share) {
   for (int i = 0; i < 2000; i++) {
