@@ -406,7 +406,9 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   abbe_refractor_model_note(scene, out);
   abbe_spectral_needs_note(scene, out);
   if (out->desc.everything) no_culling_apply(scene, desc, out);
-  return ABBE_OK;
+  if (!out->note_lost) return ABBE_OK;
+  abbe_plan_free(out);
+  return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the plan");
 }
 
 bool abbe_plan_surrounds(const abbe_scene *scene) {

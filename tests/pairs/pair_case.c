@@ -170,12 +170,11 @@ static abbe_result make_parts(const cover_row *row, bool coarse, parts *out, abb
   return result;
 }
 
-abbe_result pair_plan(const cover_row *row, abbe_error *error) {
+abbe_result pair_plan(const cover_row *row, abbe_plan *out, abbe_error *error) {
   parts p;
-  abbe_plan plan = {0};
+  *out = (abbe_plan){0};
   abbe_result result = make_parts(row, true, &p, error);
-  if (result == ABBE_OK) result = abbe_plan_make(&p.scene, &p.desc, &plan, error);
-  abbe_plan_free(&plan);
+  if (result == ABBE_OK) result = abbe_plan_make(&p.scene, &p.desc, out, error);
   free_parts(&p);
   return result;
 }

@@ -37,8 +37,8 @@ extern const size_t pair_refusal_count;
 bool pair_can(const cover_row *row);
 
 abbe_result pair_scene(size_t stone, size_t company, abbe_scene *out, abbe_error *error);
-/* Plans it, without graphics; a volume is one of few rays. */
-abbe_result pair_plan(const cover_row *row, abbe_error *error);
+/* Plans it, without graphics; a volume is one of few rays. The caller frees the plan. */
+abbe_result pair_plan(const cover_row *row, abbe_plan *out, abbe_error *error);
 /* Draws it. Errors are those of as many random samples as there are pixels. */
 abbe_result pair_draw(abbe_context *context, const cover_row *row, pair_light *out,
                       abbe_error *error);

@@ -33,6 +33,18 @@ static const struct {
     {"emerald", "alone", "volume", "accurate", "caustic", "hue", OF_DIRECTIONS},
 };
 
+static const struct {
+  cover_row row;
+  const char *words;
+  bool is;
+} noted[] = {
+    {{{0, 0, 1, 1}}, "layers show few of them", true},
+    {{{1, 0, 1, 1}}, "layers show few of them", false},
+    {{{1, 0, 3, 1}}, "ruby: its caustic volume absorbs by the direction of light", true},
+    {{{2, 0, 3, 1}}, "emerald: its caustic volume absorbs by the direction of light", true},
+    {{{0, 0, 3, 1}}, "its caustic volume absorbs", false},
+};
+
 static void name_of(const cover_row *row, char *out, size_t size) {
   snprintf(out, size, "%s, %s, %s, %s", pair_level_name(PAIR_STONE, row->level[PAIR_STONE]),
            pair_level_name(PAIR_COMPANY, row->level[PAIR_COMPANY]),
@@ -69,12 +81,25 @@ TEST(what_cannot_be_is_refused_by_name) {
       for (size_t i = 0; i < pair_refusal_count; i++)
         if (pair_refusals[i].company == company && pair_refusals[i].transport == transport)
           words = pair_refusals[i].words;
-      const abbe_result result = pair_plan(&row, &error);
+      OWNED(abbe_plan, plan) = {0};
+      const abbe_result result = pair_plan(&row, &plan, &error);
       if ((words == NULL) != (result == ABBE_OK))
         print_error("%s: %s\n", name, result == ABBE_OK ? "is not refused" : error.text);
       assert_int_equal(result, words == NULL ? ABBE_OK : ABBE_UNSUPPORTED);
       if (words != NULL) assert_contains(error.text, words);
     }
+}
+
+/* What differs from traces for a reason is said where it is asked for. */
+TEST(what_is_known_is_noted) {
+  for (size_t i = 0; i < sizeof noted / sizeof *noted; i++) {
+    OWNED(abbe_plan, plan) = {0};
+    bool found = false;
+    OK(pair_plan(&noted[i].row, &plan, &error));
+    for (size_t k = 0; k < plan.note_count; k++)
+      found = found || strstr(plan.note[k], noted[i].words) != NULL;
+    assert_int_equal(found, noted[i].is);
+  }
 }
 
 /* Why that is known to be wrong; NULL: it is not. */

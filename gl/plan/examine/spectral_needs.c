@@ -352,7 +352,21 @@ static void note_film(const abbe_object *object, const abbe_coating *coating, ab
                    object->name, thinnest);
 }
 
+/* The tracer fills volumes, and its crystals absorb by the direction of light. */
+static void note_volume(const abbe_scene *scene, abbe_plan *plan) {
+  for (size_t i = 0; plan->volume && i < plan->refractor_count; i++) {
+    const abbe_material *m = scene->object[plan->refractor_object[i]].material;
+    if (!plan->mirror[i] && abbe_material_is_pleochroic(m))
+      abbe_plan_note(plan,
+                     "%s: its caustic volume absorbs by the direction of light, as 'abbe trace' "
+                     "does, and the picture by the mean over the axes: a ruby's caustic has 623 nm "
+                     "for 599, an emerald's 542 for 521",
+                     m->name);
+  }
+}
+
 void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan) {
+  note_volume(scene, plan);
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *o = &scene->object[i];
     for (size_t k = 0; o->coatings != NULL && k < o->coatings->count; k++)

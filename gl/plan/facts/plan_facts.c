@@ -106,10 +106,15 @@ void abbe_plan_add_about(abbe_plan *plan, abbe_plan_item item, size_t index, con
 }
 
 void abbe_plan_note(abbe_plan *plan, const char *format, ...) {
-  if (plan->note_count == sizeof plan->note / sizeof *plan->note) return;
+  char(*more)[256] = realloc(plan->note, (plan->note_count + 1) * sizeof *more);
+  if (more == NULL) {
+    plan->note_lost = true;
+    return;
+  }
+  plan->note = more;
   va_list args;
   va_start(args, format);
-  abbe_number_format_list(plan->note[plan->note_count++], sizeof plan->note[0], format, args);
+  abbe_number_format_list(more[plan->note_count++], sizeof *more, format, args);
   va_end(args);
 }
 
@@ -126,5 +131,6 @@ void abbe_plan_free(abbe_plan *plan) {
   free(plan->receiver_model);
   free(plan->model);
   free(plan->mirror);
+  free(plan->note);
   memset(plan, 0, sizeof *plan);
 }

@@ -167,8 +167,9 @@ typedef struct abbe_plan {
 
   size_t entry_count; /* models and passes, in the order in which they run */
   abbe_plan_entry entry[ABBE_PLAN_MAX_ENTRIES];
-  size_t note_count; /* what is not modelled, or extrapolated */
-  char note[16][256];
+  size_t note_count; /* what is not modelled, or extrapolated: all of it */
+  char (*note)[256];
+  bool note_lost; /* for want of memory, which making the plan ends with */
 } abbe_plan;
 
 void abbe_plan_free(abbe_plan *plan);

@@ -40,6 +40,17 @@ TEST(films_are_noted) {
   assert_true(is_noted(&plan, "a layer of its film is 0.5 nm"));
 }
 
+TEST(all_that_is_to_say_is_noted) {
+  char text[8192] = "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR;
+  for (int i = 0; i < 30; i++)
+    snprintf(text + strlen(text), sizeof text - strlen(text),
+             "- {name: b%d, shape: box, size: [0.1, 0.1, 0.1], material: n-bk7, coating: {layers: "
+             "[[1.38, %d]]}, transform: [{translate: [%g, 0.3, 0.2]}]}\n",
+             i, 90 + i, 0.2 * i - 3);
+  FILLED(abbe_plan, plan, plan_text(text, NULL, &plan));
+  for (int i = 0; i < 30; i++) assert_true(is_noted(&plan, printed("b%d: film: R at", i)));
+}
+
 /* A crystal has one index here, and the plan says what is left out, once a material. */
 TEST(double_refraction_is_noted) {
   const char *head = "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR;
