@@ -77,4 +77,37 @@ static inline void abbe_vector_frame(const double a[3], const double b[3], doubl
   }
 }
 
+/* Comparisons for qsort. No number may be a NaN. */
+
+/* Compares two doubles. */
+static inline int abbe_order_ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static inline int abbe_order_descending(const void *a, const void *b) {
+  return abbe_order_ascending(b, a);
+}
+
+/* Compares two floats. */
+static inline int abbe_order_ascending_floats(const void *a, const void *b) {
+  const float x = *(const float *)a, y = *(const float *)b;
+  return (x > y) - (x < y);
+}
+
+static inline int abbe_order_descending_floats(const void *a, const void *b) {
+  return abbe_order_ascending_floats(b, a);
+}
+
+/* Functions that the compiler makes for several processors' vector units.
+ *
+ * The one that fits is chosen when the program starts. Sanitizers do not bear it, and Clang knows
+ * it in another form: there it says nothing. */
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(NDEBUG)
+#define SIDE_BY_SIDE __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define SIDE_BY_SIDE
+#endif
+
 #endif

@@ -1,6 +1,6 @@
 #include "cli/base/arguments.h"
 
-#include "base/nearest.h"
+#include "base/text.h"
 #include "cli/base/command.h"
 #include "validation/measure/file_comparison.h"
 

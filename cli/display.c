@@ -1,7 +1,6 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
-#include "cli/options/screen_options.h"
-#include "cli/options/spectral_options.h"
+#include "cli/options/picture_options.h"
 
 #include "base/number.h"
 #include "colorimetry/image/image.h"

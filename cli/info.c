@@ -1,7 +1,7 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 
-#include "base/utf8.h"
+#include "base/text.h"
 #include "colorimetry/image/image.h"
 
 #include <argp.h>

@@ -3,7 +3,7 @@
 #include "cli/pages/pages.h"
 #include "cli/python_command.h"
 
-#include "base/nearest.h"
+#include "base/text.h"
 #include "colorimetry/image/display_ocio.h"
 
 #include <argp.h>

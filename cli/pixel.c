@@ -1,7 +1,7 @@
 #include "cli/base/arguments.h"
 
 #include "cli/base/command.h"
-#include "cli/options/spectral_options.h"
+#include "cli/options/picture_options.h"
 #include "colorimetry/chromaticity.h"
 #include "colorimetry/colour_temperature.h"
 #include "colorimetry/image/image.h"

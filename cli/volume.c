@@ -1,11 +1,11 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
+#include "cli/options/picture_options.h"
 #include "cli/options/scene_input.h"
-#include "cli/options/spectral_options.h"
 
 #include "base/maths.h"
-#include "base/nearest.h"
+#include "base/text.h"
 #include "scenes/volume/caustic_volume.h"
 #include "validation/lab/volume_fill.h"
 

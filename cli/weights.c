@@ -1,6 +1,6 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
-#include "cli/options/spectral_options.h"
+#include "cli/options/picture_options.h"
 
 #include "colorimetry/weights.h"
 

@@ -1,7 +1,7 @@
 #include "colorimetry/illuminant.h"
 
-#include "base/nearest.h"
 #include "base/number.h"
+#include "base/text.h"
 #include "colorimetry/colour_temperature.h"
 #include "colorimetry/illuminant_tables.h"
 #include "colorimetry/observer.h"

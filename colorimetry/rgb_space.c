@@ -1,7 +1,5 @@
 #include "colorimetry/rgb_space.h"
 
-#include "colorimetry/matrix3.h"
-
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>

@@ -6,7 +6,7 @@
 #include "library/lib_settings.h"
 #include "scenes/cuts/cut_file.h"
 #include "scenes/cuts/cut_polyhedron.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 #include "validation/measure/gem/gem_judgement.h"
 #include "validation/measure/gem/gem_maps.h"
 

@@ -2,7 +2,7 @@
 
 #include "base/maths.h"
 #include "library/lib_handles.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 
 #include <stdlib.h>
 #include <string.h>

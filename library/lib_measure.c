@@ -4,7 +4,7 @@
 #include "base/number.h"
 #include "gl/accuracy/frame_times.h"
 #include "gl/accuracy/preset.h"
-#include "gl/plan/facts/render_settings.h"
+#include "gl/plan/facts/render_desc.h"
 #include "library/choice/finer_scene.h"
 #include "library/choice/trace_times.h"
 #include "library/lib_handles.h"

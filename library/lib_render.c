@@ -1,5 +1,5 @@
 /* The pictures of lib_scene.h that OpenGL draws. */
-#include "gl/plan/facts/render_settings.h"
+#include "gl/plan/facts/render_desc.h"
 #include "library/lib_handles.h"
 #include "library/lib_measure.h"
 #include "library/lib_settings.h"

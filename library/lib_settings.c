@@ -1,7 +1,7 @@
 #include "library/lib_settings.h"
 
-#include "base/nearest.h"
 #include "base/number.h"
+#include "base/text.h"
 #include "library/lib_handles.h"
 
 #include <math.h>

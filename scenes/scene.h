@@ -17,9 +17,9 @@
 #include "scenes/environment/radiance_map.h"
 #include "scenes/medium/medium.h"
 #include "scenes/mesh/mesh.h"
-#include "scenes/shapes/brushing.h"
 #include "scenes/shapes/convex.h"
-#include "spectral/dispersion/conditions.h"
+#include "scenes/shapes/shape.h"
+#include "spectral/dispersion/dispersion.h"
 #include "spectral/materials/material_table.h"
 #include "spectral/spectrum.h"
 
@@ -57,13 +57,13 @@ typedef struct abbe_light {
                           rectangle: unit, the normal of the side that shines */
   double radius;       /* disk, m; rectangle: of the circle around it */
   double edge[2][3];   /* rectangle: half of its width and of its height, m */
-  size_t points;       /* disk, rectangle: of so many that stand for it (environment_lights.h), with power
-                          in W/sr; 0 where it is whole, as in a scene as it is loaded */
-  double centre[3];    /* centre of the light that the points stand for */
-  double cone_rad;     /* spot: half angle beyond which there is no light */
-  double soft_rad; /* spot: full intensity inside cone - soft; smoothstep in the cosine between */
-  double power;    /* W/sr, W/m2 or W/(m2 sr) over the rendered wavelength range, shared out over
-                      wavelength by the illuminant */
+  size_t points; /* disk, rectangle: of so many that stand for it (environment_lights.h), with power
+                    in W/sr; 0 where it is whole, as in a scene as it is loaded */
+  double centre[3]; /* centre of the light that the points stand for */
+  double cone_rad;  /* spot: half angle beyond which there is no light */
+  double soft_rad;  /* spot: full intensity inside cone - soft; smoothstep in the cosine between */
+  double power;     /* W/sr, W/m2 or W/(m2 sr) over the rendered wavelength range, shared out over
+                       wavelength by the illuminant */
   abbe_illuminant illuminant;
   char *illuminant_path; /* the file that it is of, or NULL */
 } abbe_light;

@@ -1,7 +1,7 @@
 #include "spectral/biaxial.h"
 
 #include "base/maths.h"
-#include "spectral/boundary.h"
+#include "spectral/film.h"
 
 #include <complex.h>
 #include <math.h>

@@ -1,7 +1,6 @@
 #include "spectral/film.h"
 
 #include "base/maths.h"
-#include "spectral/boundary.h"
 
 #include <complex.h>
 #include <math.h>

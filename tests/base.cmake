@@ -1,6 +1,6 @@
-foreach(name clock encoding error html_text json_text
-        maths nearest number order report summary text_cursor
-        text_diff utf8 watch yaml yaml_edit yaml_quote)
+foreach(name error html_text
+        number report text_cursor
+        text_diff text yaml yaml_edit)
   abbe_test(${name} cpu abbe_base)
 endforeach()
 abbe_test(file cpu WRAPPED abbe_base)

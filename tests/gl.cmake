@@ -1,6 +1,6 @@
 set(gl_rooms abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
-foreach(name bindings camera_view cut_mesh buffer_memory gpu_store light_cube light_views local_scene material_range
-    band_colours camera_bands mirror_nodes mirror_plan passes plan plan_facts precision reach receiver_charts receiver_model refractor_model render_desc render_settings
+foreach(name bindings cut_mesh buffer_memory gpu_store light_views local_scene
+    band_colours camera_bands plan plan_facts precision reach receiver_charts refractor_model render_desc
     renderer_inputs haze_model
     shader_variant spectral_needs spectral_tables statistics support)
   abbe_test(${name} cpu ${gl_rooms})

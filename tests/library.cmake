@@ -1,8 +1,8 @@
 # The shared library's own functions; tests/install and tests/python use them from outside.
 set(library_rooms abbe_library abbe_gl abbe_validation abbe_scenes abbe_colorimetry
   abbe_spectral abbe_base)
-foreach(name lib_comparison lib_gem_report lib_materials lib_picture lib_settings lib_weights matched_physics
-    pareto_front picture_choice scene_hash trace_times)
+foreach(name lib_comparison lib_gem_report lib_materials lib_picture lib_settings lib_weights finer_scene
+    pareto_front picture_choice trace_times)
   abbe_test(${name} cpu ${library_rooms})
 endforeach()
 abbe_test(lib_scene gl ${library_rooms})

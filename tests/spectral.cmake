@@ -1,8 +1,8 @@
 foreach(name wavelengths spectrum optics film microfacets biaxial uniaxial uniaxial_answers
-        conditions dispersion index_points index_difference fit points csv_points povray_index
-        material material_numbers material_query material_table crystal_record partners absorption conductor glass_distance convert
+        dispersion index_points fit points csv_points
+        material material_numbers material_query material_table crystal_record partners absorption glass_distance convert
         table_compare
-        agf agf_formula agf_write rii rii_write csv_write material_write mtlx material_import material_table_load
+        agf agf_write rii material_write mtlx material_import
         import_batch
         check check_right table_edit table_fix)
   abbe_test(${name} cpu abbe_spectral abbe_base)

@@ -3,7 +3,6 @@ foreach(name
     accumulator
     bands band_trace
     camera
-    catacaustic wave_caustic
     checkpoint checkpoint_forged
     closed_form
     compare compare_noise
@@ -16,14 +15,14 @@ foreach(name
     guide_sums map_texels
     field
     file_comparison
-    flip ssim frame_flicker
+    flip frame_flicker
     geometry
     haze air_light haze_grid shaft_photons haze_trace
     solid
     interface
     light_walk lamp_rays path_splitting
     known_answers
-    known_chart
+    known_picture
     known_light
     mask
     media
@@ -49,9 +48,7 @@ foreach(name
     sphere_quadrature
     trace_run
     tracer
-    exit_fill exit_points exit_walk volume_checkpoint volume_fill volume_space volume_sums
-    ztest
-    )
+    exit_fill exit_walk volume_fill volume_sums)
   abbe_test(${name} cpu ${validation_rooms})
 endforeach()
 abbe_test(locale cpu abbe_gl ${validation_rooms})

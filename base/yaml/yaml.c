@@ -1,8 +1,7 @@
 #include "base/yaml/yaml.h"
 
-#include "base/nearest.h"
 #include "base/number.h"
-#include "base/utf8.h"
+#include "base/text.h"
 #include "base/yaml/yaml_tree.h"
 
 #include <errno.h>

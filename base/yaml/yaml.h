@@ -67,7 +67,7 @@ abbe_result abbe_yaml_get_bool(abbe_yaml *yaml, abbe_yaml_node mapping, const ch
 /* *out is malloc'd (or left) and freed by the caller; a previous value is freed first. */
 abbe_result abbe_yaml_get_string(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                  char **out, abbe_error *error);
-/* The same as one printable line (base/utf8.h): for names, which stand in messages and tables. */
+/* The same as one printable line (base/text.h): for names, which stand in messages and tables. */
 abbe_result abbe_yaml_get_name(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key, char **out,
                                abbe_error *error);
 /* One word of a list (names ends with NULL); *out is its index. An unknown word names the nearest.

@@ -2,7 +2,6 @@
 
 #include "base/number.h"
 #include "base/yaml/yaml_edit_text.h"
-#include "base/yaml/yaml_quote.h"
 
 #include <math.h>
 #include <stdbool.h>

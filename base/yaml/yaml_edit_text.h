@@ -1,8 +1,9 @@
 /* yaml_edit_text.h: the text under base/yaml/yaml_edit.h: its lines, where things stand in it, and
- * how bytes of it are replaced. Internal to base/. */
+ * how bytes of it are replaced. */
 #ifndef ABBE_BASE_YAML_YAML_EDIT_TEXT_H
 #define ABBE_BASE_YAML_YAML_EDIT_TEXT_H
 
+#include "base/error.h"
 #include "base/yaml/yaml_edit.h"
 
 #include <stdbool.h>
@@ -48,5 +49,16 @@ abbe_result abbe_yaml_edit_splice_value(abbe_yaml_edit *e, abbe_yaml_bytes where
                                         abbe_error *error);
 /* Closes a memory stream: its text, or NULL where memory ran out. */
 char *abbe_yaml_edit_closed(FILE *stream, char **text);
+
+/* Any text as one YAML scalar that reads back the same.
+ *
+ * Plain where no place in YAML takes it for anything else, else in double quotes, on one line
+ * either way. Bytes that are no UTF-8 (a file's name may hold them) become U+FFFD, since they would
+ * make the whole file unreadable. */
+
+/* Writes to the stream, whose own error state shows a failure. */
+void abbe_yaml_quote_write(const char *text, FILE *to);
+/* *out is malloc'd, NULL on failure. ABBE_NO_MEMORY. */
+abbe_result abbe_yaml_quote_make(const char *text, char **out, abbe_error *error);
 
 #endif

@@ -1,10 +1,8 @@
 #include "cli/base/command.h"
 
 #include "base/file.h"
-#include "base/json/json_text.h"
-#include "base/nearest.h"
 #include "base/number.h"
-#include "base/utf8.h"
+#include "base/text.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/screen/screen_file.h"
 

@@ -2,7 +2,7 @@
 
 #include "cli/base/output.h"
 
-#include "base/utf8.h"
+#include "base/text.h"
 
 #include <string.h>
 #include <unistd.h>

@@ -2,7 +2,7 @@
  *
  * Names and texts of files, of libraries and of the command line may hold what a terminal obeys.
  * Everything that is written to stdout or stderr, by whomever, becomes printable here
- * (base/utf8.h), so that no line of the program needs to think of it. Internal to cli/.
+ * (base/text.h), so that no line of the program needs to think of it. Internal to cli/.
  */
 #ifndef ABBE_CLI_BASE_OUTPUT_H
 #define ABBE_CLI_BASE_OUTPUT_H

@@ -1,6 +1,6 @@
 #include "cli/base/command.h"
 
-#include "base/nearest.h"
+#include "base/text.h"
 #include "cli/base/arguments.h"
 
 #include <stdio.h>

@@ -6,7 +6,7 @@
 #include "cli/base/command.h"
 #include "scenes/cuts/cut_file.h"
 #include "scenes/cuts/cut_stretch.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 #include "spectral/spectrum.h"
 #include "spectral/wavelengths.h"
 

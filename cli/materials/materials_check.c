@@ -2,7 +2,7 @@
 
 #include "spectral/editing/check.h"
 #include "spectral/editing/table_edit.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 
 #include <argp.h>
 #include <stdio.h>

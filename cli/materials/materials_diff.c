@@ -1,6 +1,6 @@
 #include "cli/materials/materials.h"
 
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 #include "spectral/materials/table_compare.h"
 
 #include <argp.h>

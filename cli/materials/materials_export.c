@@ -1,7 +1,7 @@
 #include "cli/materials/materials.h"
 
 #include "base/file.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 #include "spectral/formats/material_write.h"
 #include "spectral/store/material_store.h"
 

@@ -3,7 +3,7 @@
 #include "base/number.h"
 #include "spectral/dispersion/fit.h"
 #include "spectral/dispersion/index_points.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 #include "spectral/formats/material_write.h"
 #include "spectral/wavelengths.h"
 

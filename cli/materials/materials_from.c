@@ -1,7 +1,7 @@
 #include "cli/materials/materials.h"
 
 #include "spectral/editing/check.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 #include "spectral/formats/material_write.h"
 #include "spectral/materials/convert.h"
 #include "spectral/wavelengths.h"

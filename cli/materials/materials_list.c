@@ -1,7 +1,6 @@
 #include "cli/materials/materials.h"
 
-#include "spectral/formats/material_table_load.h"
-#include "spectral/materials/material_numbers.h"
+#include "spectral/formats/material_import.h"
 #include "spectral/materials/material_query.h"
 
 #include <argp.h>

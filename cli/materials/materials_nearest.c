@@ -1,7 +1,7 @@
 #include "cli/materials/materials.h"
 
-#include "spectral/formats/material_table_load.h"
-#include "spectral/materials/glass_distance.h"
+#include "spectral/formats/material_import.h"
+#include "spectral/materials/partners.h"
 #include "spectral/wavelengths.h"
 
 #include <argp.h>

@@ -1,7 +1,7 @@
 #include "cli/materials/materials.h"
 
 #include "colorimetry/plot/material_chart.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 #include "spectral/materials/partners.h"
 
 #include <argp.h>

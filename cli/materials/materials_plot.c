@@ -2,7 +2,7 @@
 
 #include "colorimetry/plot/chart.h"
 #include "colorimetry/plot/material_chart.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 
 #include <argp.h>
 #include <math.h>

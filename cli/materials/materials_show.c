@@ -5,8 +5,8 @@
 #include "colorimetry/rgb_space.h"
 #include "spectral/dispersion/fit.h"
 #include "spectral/editing/check.h"
-#include "spectral/formats/material_table_load.h"
-#include "spectral/materials/material_numbers.h"
+#include "spectral/formats/material_import.h"
+#include "spectral/materials/material_query.h"
 #include "spectral/optics.h"
 #include "spectral/wavelengths.h"
 

@@ -3,15 +3,15 @@
 
 #include "base/file.h"
 #include "base/maths.h"
-#include "base/nearest.h"
 #include "base/number.h"
+#include "base/text.h"
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "scenes/check/scene_doubts.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/object_motion.h"
 #include "scenes/studio/setting.h"
-#include "scenes/view/coverage.h"
+#include "scenes/view/view.h"
 
 #include <cjson/cJSON.h>
 #include <dirent.h>

@@ -3,8 +3,8 @@
 #include "cli/base/progress.h"
 #include "cli/base/rank_job.h"
 #include "cli/options/own_context.h"
+#include "cli/options/picture_options.h"
 #include "cli/options/scene_input.h"
-#include "cli/options/screen_options.h"
 #include "cli/render/render_request.h"
 
 #include "colorimetry/image/exr.h"

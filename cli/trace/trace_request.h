@@ -3,10 +3,8 @@
 #define ABBE_CLI_TRACE_TRACE_REQUEST_H
 
 #include "cli/options/frame_series.h"
-#include "cli/options/map_options.h"
+#include "cli/options/picture_options.h"
 #include "cli/options/scene_input.h"
-#include "cli/options/screen_options.h"
-#include "cli/options/spectral_options.h"
 #include "validation/trace/tracer/ranked_run.h"
 #include "validation/trace/tracer/trace_run.h"
 #include "validation/trace/tracer/tracer.h"

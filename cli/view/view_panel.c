@@ -2,7 +2,7 @@
 
 #include "base/file.h"
 #include "base/number.h"
-#include "base/yaml/yaml_quote.h"
+#include "base/yaml/yaml_edit_text.h"
 #include "cli/view/view_keep.h"
 #include "cli/view/widgets/view_chart.h"
 

@@ -8,7 +8,6 @@
 #define ABBE_COLORIMETRY_ATLAS_ATLAS_H
 
 #include "colorimetry/gamut.h"
-#include "colorimetry/gamut/gamut_map.h"
 #include "colorimetry/illuminant.h"
 #include "colorimetry/observer.h"
 

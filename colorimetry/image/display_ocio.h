@@ -8,7 +8,7 @@
 #define ABBE_COLORIMETRY_IMAGE_DISPLAY_OCIO_H
 
 #include "base/error.h"
-#include "colorimetry/gamut/gamut_map.h"
+#include "colorimetry/gamut.h"
 #include "colorimetry/image/image.h"
 
 #include <stddef.h>

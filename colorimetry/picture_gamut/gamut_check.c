@@ -1,10 +1,10 @@
 #include "colorimetry/picture_gamut/gamut_check.h"
 
-#include "base/order.h"
+#include "base/maths.h"
 #include "colorimetry/chromaticity.h"
 #include "colorimetry/difference.h"
-#include "colorimetry/gamut/oklab.h"
-#include "colorimetry/image/colour_map.h"
+#include "colorimetry/gamut.h"
+#include "colorimetry/image/picture_space.h"
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/image/rgb_encoding.h"
 #include "colorimetry/plot/chart.h"

@@ -5,7 +5,6 @@
 #define ABBE_COLORIMETRY_PICTURE_GAMUT_GAMUT_CHECK_H
 
 #include "colorimetry/gamut.h"
-#include "colorimetry/gamut/gamut_map.h"
 #include "colorimetry/image/picture_space.h"
 
 /* Excess (abbe_gamut_excess) up to which a colour counts as inside: half a step of 10 bits. */

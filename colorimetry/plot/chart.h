@@ -10,7 +10,7 @@
 #define ABBE_COLORIMETRY_PLOT_CHART_H
 
 #include "base/error.h"
-#include "colorimetry/image/colour_map.h"
+#include "colorimetry/image/picture_space.h"
 
 #include <stdbool.h>
 #include <stddef.h>

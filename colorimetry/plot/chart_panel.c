@@ -1,6 +1,6 @@
 #include "colorimetry/plot/chart_panel.h"
 
-#include "colorimetry/image/colour_map.h"
+#include "colorimetry/image/picture_space.h"
 
 #include <cairo.h>
 #include <math.h>

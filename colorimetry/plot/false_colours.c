@@ -1,7 +1,7 @@
 #include "colorimetry/plot/false_colours.h"
 
+#include "base/maths.h"
 #include "base/number.h"
-#include "base/order.h"
 #include "colorimetry/image/picture_space.h"
 #include "colorimetry/plot/chart.h"
 #include "colorimetry/spectral_picture/spectral_channels.h"
@@ -19,16 +19,15 @@ static const size_t absent = (size_t)-1;
 /* ---- which numbers ---- */
 
 typedef struct source {
-  size_t channel;    /* or absent: */
-  size_t triple[3];  /* R, G, B of errors */
+  size_t channel;   /* or absent: */
+  size_t triple[3]; /* R, G, B of errors */
   bool is_error;
 } source;
 
 /* "550nm", "550" */
 static bool parse_wavelength(const char *text, double *nm) {
   const char *rest;
-  return abbe_number_read(text, &rest, nm) && *nm > 0 &&
-         (*rest == '\0' || strcmp(rest, "nm") == 0);
+  return abbe_number_read(text, &rest, nm) && *nm > 0 && (*rest == '\0' || strcmp(rest, "nm") == 0);
 }
 
 /* The channel of the band that holds the wavelength. */
@@ -71,8 +70,8 @@ static abbe_result refuse(const abbe_image *image, const char *layer, const char
     const size_t used = strlen(known);
     snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "", image->channel[i]);
   }
-  return abbe_error_set(error, ABBE_NOT_FOUND,
-                        "%s: it has no channel or band '%.100s'; it has: %s", name, layer, known);
+  return abbe_error_set(error, ABBE_NOT_FOUND, "%s: it has no channel or band '%.100s'; it has: %s",
+                        name, layer, known);
 }
 
 /* By the triangle's inequality, whatever the correlation of the three. */
@@ -84,8 +83,7 @@ static abbe_result errors_of_y(const abbe_image *image, const source *of, const 
   for (size_t p = 0; p < image->width * image->height; p++) {
     double sum = 0;
     for (int k = 0; k < 3; k++)
-      sum += fabs(space.to_xyz[3 + k]) *
-             (double)image->data[p * image->channels + of->triple[k]];
+      sum += fabs(space.to_xyz[3 + k]) * (double)image->data[p * image->channels + of->triple[k]];
     out[p] = (float)sum;
   }
   return ABBE_OK;
@@ -179,8 +177,8 @@ abbe_result abbe_false_colours_write(const char *path, const abbe_image *image, 
   float *value;
   char label[400], title[400];
   bool is_error;
-  abbe_result result = abbe_false_colours_values(image, layer, name, &value, label, sizeof label,
-                                                 &is_error, error);
+  abbe_result result =
+      abbe_false_colours_values(image, layer, name, &value, label, sizeof label, &is_error, error);
   if (result != ABBE_OK) return result;
   snprintf(title, sizeof title, "%.300s", name);
   const abbe_false_colours_desc desc = {.width = image->width,

@@ -1,7 +1,7 @@
 #include "colorimetry/plot/material_chart.h"
 
 #include "colorimetry/plot/chart.h"
-#include "spectral/materials/material_numbers.h"
+#include "spectral/materials/material_query.h"
 #include "spectral/wavelengths.h"
 
 #include <math.h>

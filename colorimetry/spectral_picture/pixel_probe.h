@@ -7,7 +7,7 @@
 #define ABBE_COLORIMETRY_SPECTRAL_PICTURE_PIXEL_PROBE_H
 
 #include "colorimetry/image/picture_space.h"
-#include "colorimetry/spectral_picture/spectral_colour.h"
+#include "colorimetry/spectral_picture/spectral_channels.h"
 
 #include <stdbool.h>
 

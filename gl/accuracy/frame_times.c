@@ -2,7 +2,6 @@
 
 #include "base/clock.h"
 #include "base/maths.h"
-#include "base/order.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -7,7 +7,7 @@
 #define ABBE_GL_BEAMS_BEAM_LIST_H
 
 #include "gl/caustics/caustics.h"
-#include "gl/scene/camera_view.h"
+#include "gl/scene/local_scene.h"
 
 typedef struct abbe_beam_list {
   abbe_caustics *caustics;

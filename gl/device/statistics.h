@@ -2,7 +2,7 @@
 #ifndef ABBE_GL_DEVICE_STATISTICS_H
 #define ABBE_GL_DEVICE_STATISTICS_H
 
-#include "gl/plan/facts/passes.h"
+#include "gl/plan/facts/plan_facts.h"
 
 #include <stdbool.h>
 #include <stddef.h>

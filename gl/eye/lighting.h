@@ -8,7 +8,7 @@
 #include "gl/light/light_layers.h"
 #include "gl/light/receiver_atlas.h"
 #include "gl/methods/transports/transports.h"
-#include "gl/scene/camera_view.h"
+#include "gl/scene/local_scene.h"
 #include "gl/scene/seen/seen_meshes.h"
 
 typedef struct abbe_lighting {

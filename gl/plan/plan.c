@@ -18,7 +18,7 @@
 /* The plan's entries of a frame's passes, each with the fact that needs it.
  *
  * Written when all facts are known; whether a pass runs is in the table
- * (gl/plan/facts/passes.h). */
+ * (gl/plan/facts/plan_facts.h). */
 
 static const char unlit[] = "no light meets a refractor";
 

@@ -1,4 +1,4 @@
-#include "colorimetry/matrix3.h"
+#include "colorimetry/rgb_space.h"
 
 #include "colorimetry/reflectance/reflected_light.h"
 #include "gl/device/bindings.h"

@@ -11,10 +11,13 @@
 #define ABBE_GL_SCENE_LOCAL_SCENE_H
 
 #include "base/error.h"
+#include "gl/plan/plan.h"
 #include "scenes/scene.h"
 #include "scenes/view/map_layout.h"
+#include "scenes/view/view.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 
 typedef struct abbe_local_scene {
   const abbe_scene *scene; /* the original, or the copy below */
@@ -36,13 +39,25 @@ void abbe_local_scene_free(abbe_local_scene *local);
  * above 2^40. ABBE_NO_MEMORY. */
 abbe_result abbe_local_scene_scale_light(abbe_local_scene *local, abbe_error *error);
 
-/* Appends copies of the scene's lights of these indices to those of the local scene, which is then a
- * copy. ABBE_NO_MEMORY. */
+/* Appends copies of the scene's lights of these indices to those of the local scene, which is then
+ * a copy. ABBE_NO_MEMORY. */
 abbe_result abbe_local_scene_repeat_lights(abbe_local_scene *local, const size_t *of, size_t count,
                                            abbe_error *error);
 
 /* A map's layout between the world and the local scene. */
 void abbe_local_scene_from_world(const abbe_local_scene *local, abbe_view *view);
 void abbe_local_scene_to_world(const abbe_local_scene *local, abbe_view *view);
+
+/* What the scene's camera sees, and the samples of its picture. */
+
+typedef struct abbe_camera_view {
+  abbe_view view;    /* whole samples, the last of which may stand for pixels beyond the picture */
+  size_t samples[2]; /* across and up; they cover the picture, and less than one of them more */
+  size_t receiver_samples[2];       /* the same of receivers */
+  size_t room[2], receiver_room[2]; /* texels of their targets: as many, or some more */
+} abbe_camera_view;
+
+void abbe_camera_view_fit(const abbe_scene *scene, const abbe_render_desc *desc,
+                          abbe_camera_view *out);
 
 #endif

@@ -1,5 +1,7 @@
 #include "library/choice/finer_scene.h"
 
+#include "gl/plan/plan.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,4 +71,19 @@ abbe_result abbe_finer_scene_cut(abbe_scene *scene, abbe_error *error) {
     if (result == ABBE_OK) object->mesh = finer;
   }
   return result;
+}
+
+abbe_result abbe_matched_physics(const abbe_scene *scene, double min_nm, double max_nm,
+                                 abbe_physics *out, abbe_error *error) {
+  abbe_plan plan;
+  const abbe_render_desc desc = {.min_nm = min_nm, .max_nm = max_nm};
+  abbe_result result = abbe_plan_make(scene, &desc, &plan, error);
+  if (result != ABBE_OK) return result;
+  *out = (abbe_physics){.matched = true,
+                        .orders = plan.desc.exits,
+                        .energy_share = plan.desc.energy_share,
+                        .eye_orders = plan.eye_exits,
+                        .eye_share = plan.eye_share};
+  abbe_plan_free(&plan);
+  return ABBE_OK;
 }

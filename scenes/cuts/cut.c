@@ -1,7 +1,7 @@
 #include "scenes/cuts/cut.h"
 
 #include "base/maths.h"
-#include "base/utf8.h"
+#include "base/text.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -2,7 +2,7 @@
 
 #include "base/maths.h"
 #include "base/number.h"
-#include "base/xml.h"
+#include "base/text.h"
 
 #include <limits.h>
 #include <math.h>

@@ -6,7 +6,7 @@
 #include "colorimetry/observer.h"
 #include "colorimetry/rgb_space.h"
 #include "spectral/materials/absorption.h"
-#include "spectral/materials/material_numbers.h"
+#include "spectral/materials/material_query.h"
 #include "spectral/wavelengths.h"
 
 #include <assert.h>

@@ -3,8 +3,8 @@
 #include "scenes/export/export_writing.h"
 
 #include "base/file.h"
-#include "base/json/json_text.h"
 #include "base/maths.h"
+#include "base/text.h"
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/weights.h"
 #include "scenes/mesh/mesh.h"

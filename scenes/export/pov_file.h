@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "scenes/scene.h"
-#include "spectral/dispersion/povray_index.h"
+#include "spectral/dispersion/index_points.h"
 
 #include <stddef.h>
 

@@ -1,7 +1,7 @@
 #include "scenes/import/scene_reading.h"
 
 #include "base/maths.h"
-#include "base/nearest.h"
+#include "base/text.h"
 #include "scenes/import/scene_value.h"
 
 #include <math.h>

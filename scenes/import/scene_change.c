@@ -1,6 +1,6 @@
 #include "scenes/import/scene_reading.h"
 
-#include "base/nearest.h"
+#include "base/text.h"
 #include "scenes/import/scene_value.h"
 
 #include <math.h>

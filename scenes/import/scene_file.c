@@ -6,7 +6,7 @@
 #include "scenes/import/scene_reading.h"
 #include "scenes/import/scene_value.h"
 #include "scenes/medium/medium.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 
 #include <limits.h>
 #include <math.h>

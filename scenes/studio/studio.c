@@ -4,9 +4,9 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/yaml/yaml_edit.h"
-#include "base/yaml/yaml_quote.h"
+#include "base/yaml/yaml_edit_text.h"
 #include "scenes/studio/setting.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 
 #include <limits.h>
 #include <math.h>

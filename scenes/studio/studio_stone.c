@@ -6,7 +6,7 @@
 #include "scenes/cuts/cut_measures.h"
 #include "scenes/import/mesh/gltf_material.h"
 #include "scenes/mesh/mesh.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 #include "spectral/wavelengths.h"
 
 #include <math.h>

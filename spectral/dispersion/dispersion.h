@@ -9,46 +9,84 @@
 #define ABBE_SPECTRAL_DISPERSION_DISPERSION_H
 
 #include "base/error.h"
-#include "spectral/dispersion/conditions.h"
 #include "spectral/spectrum.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 
+/* An index at another temperature and in air of another pressure than catalogues'.
+ *
+ * Catalogues measure in air of a reference temperature and 1 atm. [SchottTIE19]'s formula takes the
+ * index from there, with six coefficients of the glass, and air's by F. Kohlrausch. A wavelength
+ * means light of one frequency, whatever the air: it is that in the catalogue's air. Humidity
+ * (below 1e-6), expansion and stress are left out. */
+
+#define ABBE_CONDITIONS_LEAST_C (-250.0)
+#define ABBE_CONDITIONS_MOST_C 200.0
+#define ABBE_CONDITIONS_MOST_ATM 100.0
+
+/* What surrounds a material, and is as warm as it is. */
+typedef struct abbe_conditions {
+  double temperature_c; /* Celsius; NaN: that of each material's measurement */
+  double pressure_atm;  /* pressure of the air, 0: there is none; NaN: 1 */
+} abbe_conditions;
+
+/* Whether they are others than catalogues'. */
+bool abbe_conditions_given(const abbe_conditions *at);
+
+/* Colder, air of 1 atm is no gas. */
+#define ABBE_AIR_LEAST_C (-190.0)
+
+/* Index of dry air at nm, Celsius and atm, by Kohlrausch [SchottTIE19]: 1 without pressure; below
+ * ABBE_AIR_LEAST_C as at that temperature. */
+double abbe_air_n(double lambda_nm, double temperature_c, double pressure_atm);
+
+/* How an index moves. Zeroed: it stays. */
+typedef struct abbe_index_shift {
+  bool on;
+  double from_c, to_c, pressure_atm;
+  double from_atm;   /* of the air that the catalogue's n is relative to; 0: to vacuum */
+  double thermal[6]; /* D0, D1, D2, E0, E1, lambda_tk (um) */
+} abbe_index_shift;
+
+/* A catalogue's n relative to the air that is there; infinite at lambda_tk. Exactly 1 is the air's
+ * own and stays. */
+double abbe_index_shift_n(const abbe_index_shift *shift, double n, double lambda_nm);
+
 /* X(code, name in files, formula); c[0], c[1], … are the coefficients, L is lambda in um. */
-#define ABBE_DISPERSION_MODELS(X)                                                             \
-  X(CONSTANT, "constant", "n = c0")                                                           \
-  X(CAUCHY, "cauchy", "n = c0 + c1 L^-2 + c2 L^-4 + ...")                                     \
-  X(SELLMEIER, "sellmeier", "n^2 - 1 = c0 + sum_k c(2k-1) L^2 / (L^2 - c(2k)^2)")             \
-  X(SELLMEIER2, "sellmeier2", "n^2 - 1 = c0 + sum_k c(2k-1) L^2 / (L^2 - c(2k))")             \
-  X(POLYNOMIAL, "polynomial", "n^2 = c0 + sum_k c(2k-1) L^c(2k)")                             \
-  X(RII4, "rii4",                                                                             \
-    "n^2 = c0 + c1 L^c2/(L^2 - c3^c4) + c5 L^c6/(L^2 - c7^c8) + c9 L^c10 + c11 L^c12 + ...")  \
-  X(POWERS, "powers", "n = c0 + sum_k c(2k-1) L^c(2k)")                                       \
-  X(HERZBERGER, "herzberger",                                                                 \
-    "n = c0 + c1 K + c2 K^2 + c3 L^2 + c4 L^4 + c5 L^6, K = 1 / (L^2 - 0.028)")               \
-  X(RII6, "rii6", "n - 1 = c0 + sum_k c(2k-1) / (c(2k) - L^-2)")                              \
-  X(RII8, "rii8", "(n^2 - 1) / (n^2 + 2) = c0 + c1 L^2 / (L^2 - c2) + c3 L^2")                \
-  X(RII9, "rii9", "n^2 = c0 + c1 / (L^2 - c2) + c3 (L - c4) / ((L - c4)^2 + c5)")             \
-  X(TABULATED, "tabulated", "n through tabulated points")                                     \
+#define ABBE_DISPERSION_MODELS(X)                                                                  \
+  X(CONSTANT, "constant", "n = c0")                                                                \
+  X(CAUCHY, "cauchy", "n = c0 + c1 L^-2 + c2 L^-4 + ...")                                          \
+  X(SELLMEIER, "sellmeier", "n^2 - 1 = c0 + sum_k c(2k-1) L^2 / (L^2 - c(2k)^2)")                  \
+  X(SELLMEIER2, "sellmeier2", "n^2 - 1 = c0 + sum_k c(2k-1) L^2 / (L^2 - c(2k))")                  \
+  X(POLYNOMIAL, "polynomial", "n^2 = c0 + sum_k c(2k-1) L^c(2k)")                                  \
+  X(RII4, "rii4",                                                                                  \
+    "n^2 = c0 + c1 L^c2/(L^2 - c3^c4) + c5 L^c6/(L^2 - c7^c8) + c9 L^c10 + c11 L^c12 + ...")       \
+  X(POWERS, "powers", "n = c0 + sum_k c(2k-1) L^c(2k)")                                            \
+  X(HERZBERGER, "herzberger",                                                                      \
+    "n = c0 + c1 K + c2 K^2 + c3 L^2 + c4 L^4 + c5 L^6, K = 1 / (L^2 - 0.028)")                    \
+  X(RII6, "rii6", "n - 1 = c0 + sum_k c(2k-1) / (c(2k) - L^-2)")                                   \
+  X(RII8, "rii8", "(n^2 - 1) / (n^2 + 2) = c0 + c1 L^2 / (L^2 - c2) + c3 L^2")                     \
+  X(RII9, "rii9", "n^2 = c0 + c1 / (L^2 - c2) + c3 (L - c4) / ((L - c4)^2 + c5)")                  \
+  X(TABULATED, "tabulated", "n through tabulated points")                                          \
   X(CONDUCTOR, "conductor", "n + i k straight between tabulated points")
 
 typedef enum abbe_dispersion_model {
 #define ABBE_DISPERSION_ENUM(code, name, formula) ABBE_DISPERSION_##code,
   ABBE_DISPERSION_MODELS(ABBE_DISPERSION_ENUM)
 #undef ABBE_DISPERSION_ENUM
-  ABBE_DISPERSION_MODEL_COUNT
+      ABBE_DISPERSION_MODEL_COUNT
 } abbe_dispersion_model;
 
 #define ABBE_DISPERSION_MAX_COEFFICIENTS 32
 
 typedef struct abbe_dispersion {
   abbe_dispersion_model model;
-  size_t count;                                 /* coefficients used */
+  size_t count; /* coefficients used */
   double c[ABBE_DISPERSION_MAX_COEFFICIENTS];
-  abbe_spectrum *table;                         /* TABULATED, CONDUCTOR: n at nm; owned; else NULL */
-  abbe_spectrum *k;                             /* CONDUCTOR: k at the nm of n; owned; else NULL */
-  abbe_index_shift shift;                       /* to a scene's conditions; zeroed in tables */
+  abbe_spectrum *table;   /* TABULATED, CONDUCTOR: n at nm; owned; else NULL */
+  abbe_spectrum *k;       /* CONDUCTOR: k at the nm of n; owned; else NULL */
+  abbe_index_shift shift; /* to a scene's conditions; zeroed in tables */
 } abbe_dispersion;
 
 void abbe_dispersion_free(abbe_dispersion *dispersion);

@@ -2,10 +2,12 @@
 
 #include "base/number.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* ---- names ---- */
 
@@ -113,4 +115,127 @@ void abbe_check_set_coefficients(abbe_check *c, abbe_finding *finding,
                              abbe_number_text(right->c[i], text));
   abbe_check_say(c, &finding->value, "%s]", list);
   finding->key = "coefficients";
+}
+
+/* Rows that are alike: one name twice, or one glass under two names. */
+enum { LINES = 5 };
+static const double lines_nm[LINES] = {ABBE_LINE_D_NM, ABBE_LINE_SMALL_G_NM, ABBE_LINE_F_NM,
+                                       ABBE_LINE_C_NM, 404.656};
+
+/* Below what catalogues print; and a slip of one in the fifth decimal, which a refractometer does
+ * not resolve either. */
+static const double SAME = 1e-7, NEAR = 1.5e-5;
+
+typedef struct place {
+  size_t row;
+  const abbe_material *material;
+  double n[LINES];
+} place;
+
+static int by_name(const void *a, const void *b) {
+  const place *x = a, *y = b;
+  int order = strcasecmp(x->material->name, y->material->name);
+  return order != 0 ? order : x->row < y->row ? -1 : 1;
+}
+
+static int by_index(const void *a, const void *b) {
+  const place *x = a, *y = b;
+  if (x->n[0] != y->n[0]) return x->n[0] < y->n[0] ? -1 : 1;
+  return x->row < y->row ? -1 : 1;
+}
+
+/* The finding stands at the later row and names the earlier. */
+static abbe_finding *find_pair(abbe_findings *findings, const place *a, const place *b,
+                               abbe_finding_kind kind, abbe_finding_weight weight, abbe_check *c) {
+  const place *first = a->row < b->row ? a : b, *later = first == a ? b : a;
+  *c = (abbe_check){.row = later->row, .findings = findings, .error = c->error};
+  abbe_finding *f = abbe_check_find(c, kind, weight);
+  if (f != NULL) f->other = first->row;
+  return f;
+}
+
+static abbe_result compare_names(place *places, size_t count, abbe_findings *findings,
+                                 abbe_error *error) {
+  qsort(places, count, sizeof *places, by_name);
+  for (size_t i = 1; i < count; i++) {
+    if (strcasecmp(places[i - 1].material->name, places[i].material->name) != 0) continue;
+    abbe_check c = {.error = error};
+    abbe_finding *f = find_pair(findings, &places[i - 1], &places[i], ABBE_FINDING_SAME_NAME,
+                                ABBE_FINDING_WRONG, &c);
+    if (f != NULL) {
+      abbe_check_say(&c, &f->evidence, "the name '%s' stands on lines %zu and %zu",
+                     places[i].material->name, places[i - 1].material->line,
+                     places[i].material->line);
+      abbe_check_say(&c, &f->fix, "rename or remove one of the two");
+    }
+    if (c.result != ABBE_OK) return c.result;
+  }
+  return ABBE_OK;
+}
+
+/* The largest difference at the lines where both have an index. */
+static double apart(const place *a, const place *b) {
+  double largest = NAN;
+  for (int k = 0; k < LINES; k++) largest = fmax(largest, fabs(a->n[k] - b->n[k]));
+  return largest;
+}
+
+static abbe_result note_pair(const place *a, const place *b, double off, abbe_findings *findings,
+                             abbe_error *error) {
+  abbe_check c = {.error = error};
+  bool same = off <= SAME;
+  abbe_finding *f = find_pair(findings, a, b, same ? ABBE_FINDING_SAME : ABBE_FINDING_NEAR,
+                              ABBE_FINDING_NOTE, &c);
+  if (f == NULL) return c.result;
+  const place *first = a->row < b->row ? a : b;
+  bool absorbs = a->material->attenuation != NULL || b->material->attenuation != NULL;
+  const char *besides = absorbs ? "; absorption is not compared" : "";
+  if (off == 0)
+    abbe_check_say(&c, &f->evidence, "n is that of %s (line %zu)%s", first->material->name,
+                   first->material->line, besides);
+  else
+    abbe_check_say(&c, &f->evidence, "n differs from that of %s (line %zu) by %.1g at most%s",
+                   first->material->name, first->material->line, off, besides);
+  abbe_check_say(&c, &f->fix,
+                 same ? "keep one, unless they differ in something else"
+                      : "the same glass from two sources, or a copy with a slip?");
+  return c.result;
+}
+
+static abbe_result compare_indices(place *places, size_t count, abbe_findings *findings,
+                                   abbe_error *error) {
+  /* constants are round numbers, and alike by chance */
+  size_t kept = 0;
+  for (size_t i = 0; i < count; i++)
+    if (isfinite(places[i].n[0]) &&
+        places[i].material->dispersion.model != ABBE_DISPERSION_CONSTANT)
+      places[kept++] = places[i];
+  qsort(places, kept, sizeof *places, by_index);
+  for (size_t i = 0; i < kept; i++)
+    for (size_t k = i + 1; k < kept && places[k].n[0] - places[i].n[0] <= NEAR; k++) {
+      double off = apart(&places[i], &places[k]);
+      if (!(off <= NEAR)) continue;
+      abbe_result result = note_pair(&places[i], &places[k], off, findings, error);
+      if (result != ABBE_OK) return result;
+      break; /* each row is named once, however many are alike */
+    }
+  return ABBE_OK;
+}
+
+abbe_result abbe_check_compare_rows(const abbe_material_table *table, abbe_findings *findings,
+                                    abbe_error *error) {
+  place *places = malloc((table->count + 1) * sizeof *places);
+  if (places == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to compare rows");
+  for (size_t i = 0; i < table->count; i++) {
+    const abbe_material *m = &table->material[i];
+    places[i] = (place){.row = i, .material = m};
+    for (int k = 0; k < LINES; k++) {
+      bool told = m->extrapolate || !abbe_material_extrapolates(m, lines_nm[k]);
+      places[i].n[k] = told ? abbe_dispersion_n(&m->dispersion, lines_nm[k]) : NAN;
+    }
+  }
+  abbe_result result = compare_names(places, table->count, findings, error);
+  if (result == ABBE_OK) result = compare_indices(places, table->count, findings, error);
+  free(places);
+  return result;
 }

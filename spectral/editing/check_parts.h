@@ -4,7 +4,7 @@
 #define ABBE_SPECTRAL_EDITING_CHECK_PARTS_H
 
 #include "base/error.h"
-#include "spectral/materials/material_numbers.h"
+#include "spectral/materials/material_query.h"
 #include "spectral/materials/material_table.h"
 
 #include <stdbool.h>

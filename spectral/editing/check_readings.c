@@ -3,7 +3,7 @@
  * other reading is near. */
 #include "base/number.h"
 #include "spectral/editing/check_parts.h"
-#include "spectral/materials/glass_distance.h"
+#include "spectral/materials/partners.h"
 #include "spectral/wavelengths.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "spectral/editing/table_edit.h"
 
-#include "base/nearest.h"
+#include "base/text.h"
 
 #include <stdint.h>
 #include <stdio.h>

@@ -1,9 +1,9 @@
 #include "spectral/formats/material_import.h"
 
-#include "base/encoding.h"
 #include "base/file.h"
+#include "base/html_text.h"
 #include "base/number.h"
-#include "base/utf8.h"
+#include "base/text.h"
 #include "spectral/dispersion/points.h"
 #include "spectral/formats/agf_formula.h"
 #include "spectral/materials/absorption.h"

@@ -1,7 +1,7 @@
 #include "spectral/formats/agf_formula.h"
 
 #include "base/number.h"
-#include "base/utf8.h"
+#include "base/text.h"
 #include "spectral/dispersion/fit.h"
 
 #include <math.h>

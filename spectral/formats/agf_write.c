@@ -4,7 +4,7 @@
 #include "base/report.h"
 #include "spectral/formats/agf_formula.h"
 #include "spectral/materials/absorption.h"
-#include "spectral/materials/material_numbers.h"
+#include "spectral/materials/material_query.h"
 #include "spectral/wavelengths.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/report.h"
-#include "base/utf8.h"
+#include "base/text.h"
 #include "spectral/store/material_store.h"
 
 #include <dirent.h>
@@ -253,9 +253,10 @@ static abbe_result take_files(runner *r, abbe_error *error) {
                     r->first_strange);
   if (r->used > 0) return ABBE_OK;
   if (r->files.count == 0)
-    return abbe_error_set(error, ABBE_NOT_FOUND,
-                          "%s: holds no file that ends in .agf, .yml, .yaml, .csv, .sqlite or .mtlx",
-                          r->batch->path[0]);
+    return abbe_error_set(
+        error, ABBE_NOT_FOUND,
+        "%s: holds no file that ends in .agf, .yml, .yaml, .csv, .sqlite or .mtlx",
+        r->batch->path[0]);
   if (r->files.count == 1) return abbe_error_set(error, r->first.code, "%s", r->first.text);
   return abbe_error_set(error, r->first.code, "none of the %zu files can be used; the first: %s",
                         r->files.count, r->first.text);

@@ -79,10 +79,10 @@ abbe_result abbe_agf_parse(const char *bytes, size_t size, const char *name,
 /* The material of size bytes of text [RefractiveIndexInfo], fit for a table. path stands for the
  * file in messages; name is the material's name, or NULL to make one of the path:
  * …/main/SiO2/nk/Malitson.yml is SiO2-Malitson, …/optical/N-BK7.yml is N-BK7. k becomes
- * attenuation, or the index a conductor's (spectral/materials/conductor.h), with a note; references
- * and comments lose their HTML. Indices or wavelengths that the file calls absolute (of the vacuum)
- * are kept and get a warning. *out is freed by the caller where the result is ABBE_OK. ABBE_SCHEMA
- * or ABBE_PARSE, with file and line, where there is no usable index. */
+ * attenuation, or the index a conductor's (spectral/materials/absorption.h), with a note;
+ * references and comments lose their HTML. Indices or wavelengths that the file calls absolute (of
+ * the vacuum) are kept and get a warning. *out is freed by the caller where the result is ABBE_OK.
+ * ABBE_SCHEMA or ABBE_PARSE, with file and line, where there is no usable index. */
 abbe_result abbe_rii_parse(const char *text, size_t size, const char *path, const char *name,
                            abbe_material *out, abbe_report *report, abbe_error *error);
 
@@ -121,5 +121,22 @@ typedef struct abbe_import_batch {
  * first file's own failure where no file could be used; ABBE_NO_MEMORY. */
 abbe_result abbe_import_batch_run(const abbe_import_batch *batch, abbe_material_table *into,
                                   abbe_report *report, abbe_error *error);
+
+/* A table of materials from where it is: compiled in, a file of YAML, or a
+ * store of many.
+ *
+ * A store is an SQLite file (spectral/store/material_store.h). A catalogue is no table: the error
+ * says how it becomes one (spectral/formats/material_import.h). */
+
+/* Loads a table: NULL or "default", "thesis", or the path of a YAML file (at most 16 MiB) or of a
+ * store. */
+abbe_result abbe_material_table_load(const char *path, abbe_material_table *out, abbe_error *error);
+/* The same for a caller that needs these names alone: from a store no other rows are read. Names
+ * that it does not have are no failure here; abbe_material_table_find reports each. */
+abbe_result abbe_material_table_load_named(const char *path, const char *const *names, size_t count,
+                                           abbe_material_table *out, abbe_error *error);
+/* A table to be examined, not used, as abbe_material_table_parse_lenient has it. */
+abbe_result abbe_material_table_load_lenient(const char *path, abbe_material_table *out,
+                                             abbe_report *report, abbe_error *error);
 
 #endif

@@ -1,12 +1,11 @@
 #include "spectral/formats/material_import.h"
 
-#include "base/encoding.h"
 #include "base/file.h"
+#include "base/html_text.h"
 #include "base/number.h"
 #include "base/yaml/yaml.h"
 #include "spectral/dispersion/points.h"
 #include "spectral/materials/absorption.h"
-#include "spectral/materials/conductor.h"
 
 #include <ctype.h>
 #include <math.h>

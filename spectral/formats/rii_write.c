@@ -1,8 +1,8 @@
 #include "spectral/formats/material_write.h"
 
-#include "base/encoding.h"
+#include "base/html_text.h"
 #include "base/number.h"
-#include "base/yaml/yaml_quote.h"
+#include "base/yaml/yaml_edit_text.h"
 #include "spectral/materials/absorption.h"
 
 #include <math.h>

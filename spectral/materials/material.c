@@ -1,6 +1,6 @@
 #include "spectral/materials/material.h"
 
-#include "base/utf8.h"
+#include "base/text.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "spectral/materials/material_table.h"
 
-#include "base/nearest.h"
+#include "base/text.h"
 #include "base/yaml/yaml.h"
 #include "spectral/materials/record_reading.h"
 

@@ -1,6 +1,6 @@
 /* material_table.h: a table of materials, as a text of YAML has it, a record a material.
  *
- * docs/materials.md documents the format; spectral/formats/material_table_load.h reads files.
+ * docs/materials.md documents the format; spectral/formats/material_import.h reads files.
  * Errors name file, line, key and value. The shipped tables are compiled in: "default" (published
  * formulas) and "thesis" (the thesis's Table 1, verbatim, historical: its indices are high, see the
  * rows' warnings).

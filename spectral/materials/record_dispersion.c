@@ -1,6 +1,6 @@
 #include "spectral/materials/record_reading.h"
 
-#include "spectral/materials/conductor.h"
+#include "spectral/materials/absorption.h"
 
 #include <stdio.h>
 #include <stdlib.h>

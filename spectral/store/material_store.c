@@ -1,7 +1,7 @@
 #include "spectral/store/material_store.h"
 
-#include "base/utf8.h"
-#include "spectral/materials/conductor.h"
+#include "base/text.h"
+#include "spectral/materials/absorption.h"
 #include "spectral/store/material_store_columns.h"
 
 #include <fcntl.h>

@@ -1,6 +1,11 @@
 #include "tests/check.h"
 
+#include "base/clock.h"
 #include "base/error.h"
+#include "tests/patience.h"
+
+#include <pthread.h>
+#include <time.h>
 
 TEST(every_code_has_its_own_text) {
   for (int i = 0; i < ABBE_RESULT_COUNT; i++) {
@@ -32,4 +37,63 @@ TEST(the_sentence_is_printable) {
   many[sizeof many - 1] = '\0';
   abbe_error_set(&error, ABBE_IO, "%s", many); /* pictures take three bytes: cut between them */
   assert_int_equal(strlen(error.text), (sizeof error.text - 1) / 3 * 3);
+}
+
+/* Time that passes. */
+
+TEST(a_wait_takes_as_long_as_it_lasts) {
+  const struct timespec wait = {.tv_nsec = 20000000};
+  const double start_s = abbe_clock_seconds();
+  assert_int_equal(nanosleep(&wait, NULL), 0);
+  const double spent_s = abbe_clock_seconds() - start_s;
+  assert_true(spent_s > 0.0199); /* however much longer the machine takes */
+}
+
+/* While a thread waits no processor works for it. */
+TEST(work_alone_counts_for_a_thread) {
+  const struct timespec wait = {.tv_nsec = 20000000};
+  const double start_s = abbe_clock_thread_seconds();
+  assert_int_equal(nanosleep(&wait, NULL), 0);
+  const double waited_s = abbe_clock_thread_seconds();
+  assert_true(waited_s - start_s < 0.01);
+  const double from_s = abbe_clock_seconds();
+  volatile unsigned steps = 0;
+  while (abbe_clock_thread_seconds() - waited_s < 0.002) steps++;
+  assert_true(abbe_clock_seconds() - from_s > 0.0019);
+}
+
+/* A watch is its thread's own, and over for good. */
+
+TEST(it_is_over_for_good) {
+  patience p = {.most = 2};
+  abbe_watch watch = {patience_lasts, &p, false};
+  assert_true(abbe_watch_goes_on());
+  abbe_watch_set(&watch);
+  assert_true(abbe_watch_goes_on());
+  OK(abbe_watch_check(&error));
+  REFUSED(ABBE_CANCELLED, "", abbe_watch_check(&error));
+  p.most = 9;
+  assert_false(abbe_watch_goes_on());
+  assert_int_equal(p.asked, 3);
+  abbe_watch_set(NULL);
+  assert_true(abbe_watch_goes_on());
+  assert_int_equal(p.asked, 3);
+}
+
+static void *ask(void *user) {
+  *(bool *)user = abbe_watch_goes_on();
+  return NULL;
+}
+
+TEST(another_thread_has_none) {
+  patience p = {.most = 0};
+  abbe_watch watch = {patience_lasts, &p, false};
+  pthread_t thread;
+  bool wanted = false;
+  abbe_watch_set(&watch);
+  assert_int_equal(pthread_create(&thread, NULL, ask, &wanted), 0);
+  pthread_join(thread, NULL);
+  assert_true(wanted);
+  assert_false(abbe_watch_goes_on());
+  abbe_watch_set(NULL);
 }

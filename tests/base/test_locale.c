@@ -14,7 +14,6 @@
 #include "scenes/view/map_layout.h"
 #include "spectral/editing/check.h"
 #include "spectral/formats/material_import.h"
-#include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
 #include "validation/lab/known/known_answers.h"
 #include "validation/measure/field.h"

@@ -2,7 +2,7 @@
 #include "tests/gl/frame.h"
 
 #include "base/maths.h"
-#include "colorimetry/matrix3.h"
+#include "colorimetry/rgb_space.h"
 #include "colorimetry/upsampling.h"
 #include "colorimetry/weights.h"
 #include "spectral/optics.h"

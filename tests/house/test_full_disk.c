@@ -11,7 +11,7 @@
 #include "scenes/export/pov_file.h"
 #include "scenes/import/scene_file.h"
 #include "spectral/editing/table_edit.h"
-#include "validation/lab/volume_checkpoint.h"
+#include "validation/lab/volume_sums.h"
 #include "validation/trace/tracer/checkpoint.h"
 
 #include <dirent.h>

@@ -17,7 +17,7 @@
 #include "scenes/mesh/mesh.h"
 #include "scenes/shapes/shape.h"
 #include "scenes/view/map_layout.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 
 #include "base/file.h"
 

@@ -6,7 +6,6 @@
 #include "spectral/editing/check.h"
 #include "spectral/editing/table_edit.h"
 #include "spectral/formats/material_import.h"
-#include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
 #include "spectral/materials/convert.h"
 #include "spectral/materials/material_query.h"

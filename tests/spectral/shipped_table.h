@@ -5,7 +5,7 @@
 
 #include "tests/check.h"
 
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 
 static inline abbe_material_table load_table(const char *path) {
   abbe_material_table table;

@@ -3,7 +3,7 @@
 #include "base/maths.h"
 #include "scenes/volume/half.h"
 #include "validation/lab/lone_object.h"
-#include "validation/lab/volume_checkpoint.h"
+#include "validation/lab/volume_sums.h"
 
 #include <omp.h>
 #include <stdlib.h>

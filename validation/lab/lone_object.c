@@ -1,7 +1,7 @@
 #include "validation/lab/lone_object.h"
 
 #include "base/maths.h"
-#include "validation/lab/volume_checkpoint.h"
+#include "validation/lab/volume_sums.h"
 #include "validation/trace/transport/random.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* The metrics of colour, pixel by pixel, and what REF's noise alone makes of them. */
 #include "validation/measure/compare_state.h"
 
-#include "base/order.h"
+#include "base/maths.h"
 #include "colorimetry/difference.h"
 
 #include <math.h>

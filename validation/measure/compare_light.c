@@ -1,8 +1,8 @@
 /* The metrics of light: X, Y, Z, the bands, and the Z-test. */
 #include "validation/measure/compare_state.h"
 
+#include "base/maths.h"
 #include "base/number.h"
-#include "base/order.h"
 #include "colorimetry/weights.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "validation/measure/file_comparison.h"
 
-#include "base/order.h"
+#include "base/maths.h"
 #include "colorimetry/plot/chart.h"
 
 #include <math.h>

@@ -1,8 +1,6 @@
 #include "validation/measure/compare_state.h"
 
 #include "base/maths.h"
-#include "base/order.h"
-#include "base/side_by_side.h"
 #include "colorimetry/difference.h"
 #include "colorimetry/rgb_space.h"
 

@@ -1,6 +1,6 @@
 #include "validation/measure/mask.h"
 
-#include "base/order.h"
+#include "base/maths.h"
 #include "colorimetry/rgb_space.h"
 
 #include <math.h>

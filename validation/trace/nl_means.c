@@ -1,6 +1,6 @@
 #include "validation/trace/nl_means.h"
 
-#include "base/side_by_side.h"
+#include "base/maths.h"
 
 #include <math.h>
 #include <omp.h>

@@ -5,7 +5,7 @@
 #define ABBE_GL_IMAGE_SPACE_IMAGE_EYE_H
 
 #include "gl/methods/image_space/image_places.h"
-#include "gl/scene/camera_view.h"
+#include "gl/scene/local_scene.h"
 
 typedef struct abbe_image_eye {
   const abbe_gpu_scene *scene;

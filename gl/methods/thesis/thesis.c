@@ -14,7 +14,7 @@
 
 #include "colorimetry/weights.h"
 #include "gl/light/photon_start.h"
-#include "gl/scene/camera_view.h"
+#include "gl/scene/local_scene.h"
 #include "scenes/geometry/transform.h"
 
 #include <math.h>

@@ -12,7 +12,7 @@
 
 #include "base/maths.h"
 #include "gl/methods/pinholes/pinhole_samples.h"
-#include "gl/scene/camera_view.h"
+#include "gl/scene/local_scene.h"
 
 #include <stdlib.h>
 

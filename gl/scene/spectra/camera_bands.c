@@ -1,6 +1,6 @@
 #include "gl/scene/spectra/camera_bands.h"
 
-#include "colorimetry/matrix3.h"
+#include "colorimetry/rgb_space.h"
 #include "colorimetry/upsampling.h"
 #include "gl/scene/spectra/band_parts.h"
 

@@ -1,11 +1,14 @@
 #include "gl/scene/spectra/spectral_tables.h"
 
 #include "colorimetry/weights.h"
+#include "gl/device/float4.h"
 #include "gl/plan/examine/spectral_needs.h"
 #include "gl/scene/spectra/band_parts.h"
+#include "spectral/optics.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { HALF_STEPS = 32 };
 
@@ -263,4 +266,210 @@ void abbe_spectral_tables_free(abbe_spectral_tables *t) {
   free(t->sample_weight);
   free(t->interval_weight);
   *t = (abbe_spectral_tables){0};
+}
+
+enum { PARTS = 64 /* parts of an interval, or of a band */ };
+
+static double straight_at(const abbe_material *metal, double lambda_nm) {
+  double n = 0, k = 0;
+  abbe_material_nk(metal, lambda_nm, &n, &k, NULL);
+  return abbe_optics_fresnel_conductor(1, n, k);
+}
+
+/* What a metal absorbs at normal incidence; all, where there is none. */
+static double taken_by(double n, double k) {
+  return k < 0 ? 1 : 1 - abbe_optics_fresnel_conductor(1, n, k);
+}
+
+double abbe_mirror_factor(double n, double k, double reflected) {
+  const double taken = taken_by(n, k);
+  return taken > 0 ? (1 - reflected) / taken : 1;
+}
+
+double abbe_mirror_reflected(double n, double k, double factor) {
+  return fmax(1 - factor * taken_by(n, k), 0);
+}
+
+/* A system of three diagonals, of least squares, within 0 and 1: by turns, each corner where it
+ * does best beside its neighbours. */
+static void solve(size_t count, const double *beside, const double *middle, const double *right,
+                  double *corner) {
+  enum { TURNS = 100 };
+  for (int turn = 0; turn < TURNS; turn++)
+    for (size_t i = 0; i < count; i++) {
+      double rest = right[i];
+      if (i > 0) rest -= beside[i] * corner[i - 1];
+      if (i + 1 < count) rest -= beside[i + 1] * corner[i + 1];
+      corner[i] = fmin(fmax(rest / middle[i], 0), 1);
+    }
+}
+
+/* What counts: how bright the light is, then its colour, and last what nobody sees. */
+static double weight_of(const abbe_weights_range *light, double from_nm, double to_nm) {
+  double xyz[3];
+  abbe_weights_range_xyz(light, from_nm, to_nm, xyz);
+  return xyz[1] + 0.05 * (xyz[0] + xyz[2]) +
+         1e-4 * (to_nm - from_nm) / (light->max_nm - light->min_nm);
+}
+
+/* The polygon through all nodes that is nearest to the metal's reflectance; capacity for 3 numbers
+ * a node, zeroed. */
+static void fit(const abbe_material *metal, const abbe_wavelengths *w,
+                const abbe_weights_range *light, double *room, double *corner) {
+  double *beside = room, *middle = room + w->count, *right = room + 2 * w->count;
+  for (size_t i = 0; i + 1 < w->count; i++) {
+    const double from = w->lambda_nm[i], width = w->lambda_nm[i + 1] - from;
+    for (int k = 0; k < PARTS; k++) {
+      const double t = (k + 0.5) / PARTS;
+      const double here =
+          weight_of(light, from + width * k / PARTS, from + width * (k + 1) / PARTS);
+      const double straight = straight_at(metal, from + t * width);
+      middle[i] += here * (1 - t) * (1 - t);
+      middle[i + 1] += here * t * t;
+      beside[i + 1] += here * t * (1 - t);
+      right[i] += here * (1 - t) * straight;
+      right[i + 1] += here * t * straight;
+    }
+  }
+  solve(w->count, beside, middle, right, corner);
+}
+
+/* The mean over the one band that there is. */
+static double mean_of(const abbe_material *metal, const abbe_wavelengths *w,
+                      const abbe_weights_range *light) {
+  const double from = w->edge_nm[0], width = w->edge_nm[1] - from;
+  double sum = 0, all = 0;
+  for (int k = 0; k < PARTS; k++) {
+    const double here = weight_of(light, from + width * k / PARTS, from + width * (k + 1) / PARTS);
+    all += here;
+    sum += here * straight_at(metal, from + width * (k + 0.5) / PARTS);
+  }
+  return sum / all;
+}
+
+abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelengths *w,
+                                   const abbe_weights_range *light, abbe_mirror_node *out,
+                                   abbe_error *error) {
+  for (size_t i = 0; i < w->count; i++) {
+    out[i] = (abbe_mirror_node){.factor = 1 - mirror->mirror_reflectance, .k = -1};
+    if (mirror->conductor == NULL) continue;
+    abbe_result result =
+        abbe_material_nk(mirror->conductor, w->lambda_nm[i], &out[i].n, &out[i].k, error);
+    if (result != ABBE_OK) return result;
+  }
+  if (mirror->conductor == NULL) return ABBE_OK;
+  double *room = calloc(4 * w->count + 1, sizeof *room), *corner = room + 3 * w->count;
+  if (room == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a mirror's table");
+  if (w->count > 1)
+    fit(mirror->conductor, w, light, room, corner);
+  else
+    corner[0] = mean_of(mirror->conductor, w, light);
+  for (size_t i = 0; i < w->count; i++) {
+    const double taken = taken_by(out[i].n, out[i].k);
+    out[i].factor = taken > 0 ? (1 - corner[i]) / taken : 1;
+  }
+  free(room);
+  return ABBE_OK;
+}
+
+const abbe_material *abbe_mirror_nodes_laid_by(const abbe_scene *scene, const abbe_plan *plan,
+                                               size_t i) {
+  if (!plan->mirror[i]) return scene->object[plan->refractor_object[i]].material;
+  for (size_t k = 0; k < plan->refractor_count; k++)
+    if (!plan->mirror[k]) return scene->object[plan->refractor_object[k]].material;
+  return NULL;
+}
+
+size_t abbe_interval_sums_texels(const abbe_plan *plan) {
+  return plan->tints > 0 ? 3 : 2;
+}
+
+size_t abbe_interval_sums_size(const abbe_plan *plan, size_t steps, size_t nodes) {
+  const size_t rows = plan->light_view_count * plan->refractor_count * (nodes + 1);
+  return rows * abbe_interval_sums_texels(plan) * (steps + 1);
+}
+
+/* A part of a light's spectrum: X, Y, Z, or its share in each of three bands, and the middle of
+ * each. */
+typedef struct spectrum_part {
+  double light[3], lambda_nm[3];
+} spectrum_part;
+
+static void weigh_part(const abbe_interval_sums *of, const abbe_weights_range *range, double from,
+                       double to, spectrum_part *out) {
+  const abbe_illuminant *illuminant = range->illuminant;
+  const double min = range->min_nm, max = range->max_nm;
+  const double width = (max - min) / (double)(of->bands > 0 ? of->bands : 1);
+  if (of->bands == 0) abbe_weights_range_xyz(range, from, to, out->light);
+  for (int c = 0; c < 3; c++) {
+    const double low = min + width * (double)(of->band + (size_t)c);
+    const double a = of->bands == 0 ? from : fmax(from, low);
+    const double b = of->bands == 0 ? to : fmin(to, low + width);
+    out->lambda_nm[c] = 0.5 * (a + fmax(a, b));
+    if (of->bands > 0)
+      out->light[c] = b > a ? abbe_weights_band_power(illuminant, min, max, a, b) : 0;
+  }
+}
+
+/* One interval of refractor r from node b = i down to node a = i - 1, step by step. Where the index
+ * stays, the place along is by wavelength; so it is without a material. */
+static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *w,
+                          const abbe_weights_range *range, size_t r, size_t i, float (*out)[4]) {
+  const abbe_material *material = abbe_mirror_nodes_laid_by(of->scene, of->plan, r);
+  const size_t texels = abbe_interval_sums_texels(of->plan);
+  double min = w->edge_nm[0], max = w->edge_nm[w->count];
+  double a = i > 0 ? w->lambda_nm[i - 1] : w->edge_nm[0];
+  double b = i < w->count ? w->lambda_nm[i] : w->edge_nm[w->count];
+  double edge = i == 0 ? a : i == w->count ? b : w->edge_nm[i];
+  if (w->count == 1) { /* the one node keeps its whole band in the interval before it */
+    a = edge = i == 0 ? min : max;
+    b = max;
+  }
+  const bool lines = of->plan->lines > 1; /* the nodes, with all light at the nearer one */
+  double n_a = 1, n_b = 1, sum[3] = {0, 0, 0}, moment[3] = {0, 0, 0}, taken[3] = {0, 0, 0},
+         before = b;
+  if (material != NULL) {
+    abbe_material_n(material, a, &n_a, NULL);
+    abbe_material_n(material, b, &n_b, NULL);
+  }
+  for (size_t k = 0; k <= of->steps; k++, out += texels) {
+    size_t middle = of->steps / 2;
+    double lambda_nm = k <= middle ? b + (edge - b) * (double)k / (double)middle
+                                   : edge + (a - edge) * (double)(k - middle) / (double)middle;
+    double at[4] = {lambda_nm}, n[4], t[4]; /* here, then the middle of each of the three */
+    spectrum_part part;
+    weigh_part(of, range, lambda_nm, before, &part);
+    for (int c = 0; c < 3; c++) at[1 + c] = part.lambda_nm[c];
+    for (int c = 0; c < 4 && lines; c++) at[c] = k <= middle ? b : a;
+    for (int c = 0; c < 4; c++) {
+      n[c] = n_b;
+      if (material != NULL) abbe_material_n(material, at[c], &n[c], NULL);
+      t[c] = n_a != n_b ? (n[c] - n_b) / (n_a - n_b) : b > a ? (b - at[c]) / (b - a) : 0;
+    }
+    for (int c = 0; c < 3; c++) {
+      sum[c] += part.light[c];
+      moment[c] += part.light[c] * t[1 + c];
+      if (of->plan->tints > 0)
+        taken[c] += part.light[c] * abbe_tint_attenuation(of->scene, of->plan, r, at[1 + c]);
+    }
+    abbe_float4_store(sum, t[0], out[0]);
+    abbe_float4_store(moment, n[0], out[1]);
+    if (of->plan->tints > 0) abbe_float4_store(taken, 0, out[2]);
+    before = lambda_nm;
+  }
+}
+
+float (*abbe_interval_sums_fill(const abbe_interval_sums *of, const abbe_wavelengths *w,
+                                float (*out)[4]))[4] {
+  const abbe_plan *plan = of->plan;
+  const size_t an_interval = abbe_interval_sums_texels(plan) * (of->steps + 1);
+  for (size_t light = 0; light < plan->light_view_count; light++) {
+    abbe_weights_range range;
+    abbe_weights_range_make_by(plan->desc.observer, &of->scene->light[light].illuminant,
+                               w->edge_nm[0], w->edge_nm[w->count], &range);
+    for (size_t k = 0; k < plan->refractor_count; k++)
+      for (size_t i = 0; i <= w->count; i++, out += an_interval)
+        fill_interval(of, w, &range, k, i, out);
+  }
+  return out;
 }

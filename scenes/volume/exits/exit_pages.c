@@ -1,7 +1,7 @@
 #include "scenes/volume/exits/exit_pages.h"
 
 #include "base/maths.h"
-#include "scenes/volume/exits/exit_sheets.h"
+#include "scenes/volume/exits/exit_light.h"
 
 #include <assert.h>
 #include <math.h>

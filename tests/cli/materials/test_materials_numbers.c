@@ -1,7 +1,7 @@
 /* The verbs of `abbe materials` that are about numbers: list, show, nearest, check, fit, from. */
 #include "tests/cli/run_json.h"
 
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 
 static void answers(const char *line, int code, const char *part) {
   int actual = run_line(line);

@@ -4,7 +4,7 @@
 
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/plot/material_chart.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 
 #include <unistd.h>
 

@@ -1,7 +1,7 @@
 /* Error bars in false colours: black where there is no error, white at the scale's end. */
 #include "gl/accuracy/error_bars.h"
 
-#include "colorimetry/image/colour_map.h"
+#include "colorimetry/image/picture_space.h"
 #include "colorimetry/image/png_file.h"
 #include "tests/check.h"
 #include "tests/fontconfig.h"

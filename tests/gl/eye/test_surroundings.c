@@ -2,7 +2,7 @@
 #include "tests/gl/frame.h"
 
 #include "base/maths.h"
-#include "scenes/view/coverage.h"
+#include "scenes/view/view.h"
 
 /* The floor is far out of the way. */
 #define SKY_ONLY                                                                                   \

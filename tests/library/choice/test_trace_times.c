@@ -1,7 +1,10 @@
 /* The tracer as a contestant: its picture is the tracer's own to the bit, its frames are timed. */
-#include "tests/validation/trace_scene.h"
+#include "tests/check.h"
 
+#include "library/choice/finer_scene.h"
 #include "library/choice/trace_times.h"
+#include "tests/scenes/scene_text.h"
+#include "tests/validation/trace_scene.h"
 
 #define SCENE CAMERA POINT_LIGHT FLOOR BEADS("crown")
 
@@ -36,4 +39,51 @@ TEST(what_is_refused) {
   desc.passes = 1;
   REFUSED(ABBE_INVALID_ARGUMENT, "too few to trace and filter",
           abbe_trace_times_measure(&scene, &desc, &times, NULL, &error));
+}
+
+/* A reference stays with its scene: what changes a crystal's picture changes the hash. */
+
+#define SCENE_HASH_SCENE "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR
+
+static void absorb(abbe_spectrum **to, double per_m) {
+  const double lambda_nm = 550;
+  abbe_spectrum_free(*to);
+  OK(abbe_spectrum_make(&lambda_nm, &per_m, 1, ABBE_INTERPOLATION_LINEAR, to, &error));
+}
+
+TEST(crystals_have_axes_two_indices_and_two_losses) {
+  OWNED(abbe_scene, scene) = scene_of(SCENE_HASH_SCENE BALL("tourmaline-green"));
+  abbe_object *ball = &scene.object[1];
+  abbe_material *crystal = (abbe_material *)ball->material;
+  absorb(&crystal->attenuation, 10);
+  absorb(&crystal->attenuation_yz[1], 10);
+  unsigned long long hash[4] = {abbe_scene_hash(&scene)};
+  assert_true(abbe_scene_hash(&scene) == hash[0]);
+  const double axis[3] = {ball->axis[1], ball->axis[2], ball->axis[0]};
+  memcpy(ball->axis, axis, sizeof axis);
+  hash[1] = abbe_scene_hash(&scene);
+  crystal->extraordinary.c[0] += 1e-4;
+  hash[2] = abbe_scene_hash(&scene);
+  /* the same mean over the axes */
+  absorb(&crystal->attenuation, 5);
+  absorb(&crystal->attenuation_yz[1], 20);
+  hash[3] = abbe_scene_hash(&scene);
+  for (int i = 1; i < 4; i++) assert_true(hash[i] != hash[i - 1]);
+}
+
+TEST(a_finer_scene_keeps_its_coatings) {
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BRICK(
+      "flat, coating: [{layers: [[1.38, 99.6]], faces: [table]}, "
+      "{layers: [[2.1, 60]], faces: [girdle]}]") BALL("flat, coating: {layers: "
+                                                      "[[1.38, 99.6]]}"));
+  const abbe_object *brick = &scene.object[1];
+  const abbe_coatings *c = brick->coatings;
+  const size_t faces = brick->mesh.face_count;
+  FREED uint8_t *before = malloc(faces);
+  memcpy(before, c->face, faces);
+  OK(abbe_finer_scene_cut(&scene, &error));
+  assert_int_equal(brick->mesh.face_count, 4 * faces);
+  assert_int_equal(c->face_count, brick->mesh.face_count);
+  for (size_t i = 0; i < c->face_count; i++) assert_int_equal(c->face[i], before[i / 4]);
+  assert_null(scene.object[2].coatings->face); /* on all of it */
 }

@@ -5,7 +5,7 @@
 
 #include "base/file.h"
 #include "scenes/mesh/mesh.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 #include "spectral/materials/material_table.h"
 #include "tests/scenes/cuts/designs.h"
 

@@ -1,8 +1,9 @@
 #include "tests/check.h"
-#include "tests/random.h"
 
 #include "base/maths.h"
 #include "scenes/environment/environment.h"
+#include "scenes/environment/environment_source.h"
+#include "tests/random.h"
 
 /* Grey noise with black places, a bright spot at the zenith and one where longitude begins again.
  */
@@ -177,4 +178,105 @@ TEST(what_is_refused) {
     if (i < 4) assert_contains(last_error.text, "green of the texel at column 5, row 2");
     assert_null(e.texels.keep);
   }
+}
+
+static abbe_sky sky_of(int type, double elevation) {
+  return (abbe_sky){type, {cos(elevation), 0, sin(elevation)}};
+}
+
+TEST(every_sky_is_1_at_its_zenith) {
+  for (int type = 1; type <= ABBE_SKY_TYPES; type++)
+    for (double e = 0.1; e < 1.6; e += 0.3) {
+      const abbe_sky sky = sky_of(type, e);
+      assert_near(abbe_sky_relative(&sky, (const double[3]){0, 0, 1}), 1, 1e-12);
+      assert_true(abbe_sky_relative(&sky, (const double[3]){1, 0, 0}) == 0);
+      assert_true(abbe_sky_relative(&sky, (const double[3]){0, 0.6, -0.8}) == 0);
+      for (double a = 0; a < 6.3; a += 0.3)
+        for (double z = 0.001; z < 1; z += 0.1) {
+          const double s = sqrt(1 - z * z);
+          assert_true(abbe_sky_relative(&sky, (const double[3]){s * cos(a), s * sin(a), z}) > 0);
+        }
+    }
+}
+
+TEST(known_irradiances) {
+  const abbe_sky overcast = {.type = ABBE_SKY_OVERCAST}, uniform = {.type = 5};
+  assert_near(abbe_sky_horizontal(&overcast), 7 * ABBE_PI / 9, 1e-5);
+  assert_near(abbe_sky_horizontal(&uniform), ABBE_PI, 1e-12);
+}
+
+/* By hand from the formula: the clear sky, sun at 30 degrees, 45 degrees up, opposite to the sun
+ * (105 degrees from it) and towards it (15). */
+TEST(the_clear_sky) {
+  const abbe_sky sky = sky_of(ABBE_SKY_CLEAR, ABBE_PI / 6);
+  const double z = cos(ABBE_PI / 4);
+  const double scale = (1 - exp(-0.32 / z)) / (1 - exp(-0.32)) /
+                       (1 + 10 * (exp(-ABBE_PI) - exp(-1.5 * ABBE_PI)) + 0.45 * 0.25);
+  const double away = 1 + 10 * (exp(-3 * 105 * ABBE_PI / 180) - exp(-1.5 * ABBE_PI)) +
+                      0.45 * pow(cos(105 * ABBE_PI / 180), 2);
+  const double towards = 1 + 10 * (exp(-3 * 15 * ABBE_PI / 180) - exp(-1.5 * ABBE_PI)) +
+                         0.45 * pow(cos(15 * ABBE_PI / 180), 2);
+  assert_near(abbe_sky_relative(&sky, (const double[3]){-z, 0, z}), scale * away, 1e-12);
+  assert_near(abbe_sky_relative(&sky, (const double[3]){z, 0, z}), scale * towards, 1e-12);
+}
+
+TEST(which_need_the_sun) {
+  assert_true(abbe_sky_needs_sun(ABBE_SKY_CLEAR) && abbe_sky_needs_sun(2));
+  assert_true(!abbe_sky_needs_sun(1) && !abbe_sky_needs_sun(5) && !abbe_sky_needs_sun(16));
+  assert_true(!abbe_sky_needs_sun(0) && !abbe_sky_needs_sun(17));
+}
+
+/* The share of each entry, from the table itself. */
+static void check_shares(const double *weight, size_t count) {
+  double share[64] = {0}, sum = 0;
+  MADE(abbe_alias_table, table, abbe_alias_table_make(weight, count, &table, &error));
+  for (size_t i = 0; i < count; i++) {
+    sum += weight[i];
+    share[i] += table.keep[i];
+    assert_true(table.keep[i] >= 0 && table.keep[i] <= 1);
+    if (table.keep[i] < 1) share[table.other[i]] += 1 - table.keep[i];
+  }
+  for (size_t i = 0; i < count; i++) {
+    assert_near(share[i] / (double)count, weight[i] / sum, 1e-15);
+    if (weight[i] == 0) assert_true(share[i] == 0);
+  }
+}
+
+TEST(shares_are_the_weights) {
+  double weight[64];
+  check_shares((const double[]){3}, 1);
+  check_shares((const double[]){1, 1}, 2);
+  check_shares((const double[]){1, 2, 3, 4}, 4);
+  check_shares((const double[]){0, 0, 1e-20, 0}, 4);
+  check_shares((const double[]){0.1, 0, 0.2, 0.7, 0, 1e9, 3}, 7);
+  for (size_t n = 1; n <= 64; n++) {
+    for (size_t i = 0; i < n; i++)
+      weight[i] = i % 3 == 0 ? 0.1 * (double)(i * i % 17) + 0.1 : i % 5 ? 0 : 0.3;
+    check_shares(weight, n);
+  }
+}
+
+TEST(draws) {
+  const double weight[] = {0, 5, 0, 1, 2};
+  size_t hits[5] = {0};
+  abbe_alias_table table;
+  OK(abbe_alias_table_make(weight, 5, &table, &error));
+  for (int i = 0; i < 80000; i++) hits[abbe_alias_table_draw(&table, (i + 0.5) / 80000)]++;
+  for (int i = 0; i < 5; i++) assert_near((double)hits[i], weight[i] * 10000, 3);
+  assert_true(weight[abbe_alias_table_draw(&table, 1 - 0x1p-53)] > 0);
+  abbe_alias_table_free(&table);
+  abbe_alias_table_free(NULL);
+}
+
+TEST(alias_table_what_is_refused) {
+  static const double bad[][2] = {{0, 0},        {-1, 2},        {NAN, 1},
+                                  {INFINITY, 1}, {1e308, 1e308}, {0, 1e-320}};
+  abbe_alias_table table;
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    REFUSED(ABBE_INVALID_ARGUMENT, "weights want to be finite, at least",
+            abbe_alias_table_make(bad[i], 2, &table, &error));
+    assert_null(table.keep);
+  }
+  REFUSED(ABBE_INVALID_ARGUMENT, "weights want to be finite, at least",
+          abbe_alias_table_make(bad[0], 0, &table, &error));
 }

@@ -3,7 +3,7 @@
 #include "tests/scenes/scene_text.h"
 
 #include "scenes/export/scene_export.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 
 static abbe_export_index index_of(const abbe_material_table *table, const char *name,
                                   abbe_export_form form, double lambda_nm) {

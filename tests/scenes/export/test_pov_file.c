@@ -4,7 +4,7 @@
 
 #include "base/file.h"
 #include "scenes/export/pov_file.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 
 /* A table of the very law that POV-Ray has: n = 1.7 * 1.05^((555 - nm) / 350). */
 static const char *lawful(void) {

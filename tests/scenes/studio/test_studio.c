@@ -4,7 +4,7 @@
 #include "scenes/import/scene_file.h"
 #include "scenes/studio/setting.h"
 #include "scenes/studio/studio.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 
 #include <unistd.h>
 

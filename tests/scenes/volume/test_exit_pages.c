@@ -1,11 +1,13 @@
 /* Maps of rays on parallelograms: a plate's beam stands where it should, keeps its flux and its
  * colour, and ends at what it meets first. */
-#include "tests/scenes/scene_text.h"
+#include "tests/check.h"
 
 #include "base/maths.h"
 #include "colorimetry/weights.h"
+#include "scenes/volume/exits/exit_light.h"
 #include "scenes/volume/exits/exit_pages.h"
 #include "scenes/volume/half.h"
+#include "tests/scenes/scene_text.h"
 
 #define PLATE                                                                                      \
   CAMERA SUN FLOOR                                                                                 \
@@ -154,4 +156,139 @@ TEST(requests) {
   assert_int_equal(abbe_exit_pages_make(&b.volume, &desc, (const double(*)[9]) & floor_below, 1, 8,
                                         &pages, NULL),
                    ABBE_INVALID_ARGUMENT);
+}
+
+/* Parallelograms that rays meet: known places, the first of two, parts by the index, sides, and
+ * what hides the light, of an object that stands turned. */
+
+/* A quarter turn about y: the object's x is down, its z the world's x. */
+static const abbe_volume_place place = {.centre = {1, 2, 3}, .turn = {0, 0, 1, 0, 1, 0, -1, 0, 0}};
+/* The floor at z = 0, U x V up, and a shelf at z = 1 over x > 1, U x V down. */
+static const double floor_and_shelf[2][9] = {{-4, -4, 0, 10, 0, 0, 0, 10, 0},
+                                             {1, -4, 1, 0, 10, 0, 5, 0, 0}};
+
+static void make_sheets(abbe_exit_sheet sheet[2]) {
+  for (int i = 0; i < 2; i++) abbe_exit_sheet_make(floor_and_shelf[i], &place, &sheet[i]);
+  assert_near(sheet[0].area, 100, 1e-12);
+  assert_near(sheet[1].area, 50, 1e-12);
+}
+
+/* Straight down from the object's middle, and by the index 0.5 m to the side for a step of 1. */
+static const abbe_exit_ray down = {.way = {1, 0, 0}, .place_by = {0, 0, -0.5}, .share = 1};
+
+static void meet(size_t first, size_t sheets, const float *step, size_t parts,
+                 abbe_exit_landing *at) {
+  abbe_exit_sheet sheet[2];
+  abbe_exit_track track[2];
+  make_sheets(sheet);
+  abbe_exit_sheets_track(sheet + first, sheets, &down, track);
+  abbe_exit_sheets_meet(track, sheets, step, parts, at);
+}
+
+TEST(parts) {
+  const float step[ABBE_EXIT_MOST_PARTS] = {0, 1, 2, -1, 20};
+  abbe_exit_landing at;
+  meet(0, 1, step, 5, &at);
+  for (int i = 0; i < 4; i++) {
+    assert_int_equal(at.page[i], 0);
+    assert_near((double)at.far[i], 3, 1e-6);
+    assert_near((double)at.u[i], (1 - 0.5 * (double)step[i] + 4) / 10, 1e-6);
+    assert_near((double)at.v[i], 0.6, 1e-6);
+  }
+  assert_int_equal(at.page[4], -1); /* beside the floor */
+}
+
+TEST(the_first) {
+  const float step[ABBE_EXIT_MOST_PARTS] = {0.1f, -1};
+  abbe_exit_landing at;
+  meet(0, 2, step, 2, &at);
+  assert_int_equal(at.page[0], 0); /* beside the shelf */
+  assert_int_equal(at.page[1], 3); /* on it, which is met along its normal */
+  assert_near((double)at.far[1], 2, 1e-6);
+  assert_near((double)at.u[1], 0.6, 1e-6);
+  assert_near((double)at.v[1], 0.1, 1e-6);
+  meet(1, 1, step, 1, &at);
+  assert_int_equal(at.page[0], -1);
+}
+
+TEST(hiding) {
+  static const double up[3] = {-1, 0, 0}, below[3] = {2.5, 0, 0.5}, on[3] = {2, 0, 0.5};
+  abbe_exit_sheet sheet[2];
+  make_sheets(sheet);
+  assert_true(abbe_exit_sheets_hide(sheet, 2, below, up, INFINITY));
+  assert_false(abbe_exit_sheets_hide(sheet, 2, below, up, 0.4));
+  assert_false(abbe_exit_sheets_hide(sheet, 1, below, up, INFINITY)); /* the floor is behind it */
+  assert_false(abbe_exit_sheets_hide(sheet, 2, on, up, INFINITY));    /* what stands on the shelf */
+}
+
+/* Maps that light is laid on: its sum and its middle stay, tents are as wide as asked for, and even
+ * light stays even up to the ends. */
+
+enum { SIDE = 48 };
+
+static float map[SIDE * SIDE][4], smooth[SIDE * SIDE][4];
+
+/* Of a channel: its sum, the mean of x and of y, and their variances. */
+static void find_moments(const float (*of)[4], int channel, double moment[5]) {
+  memset(moment, 0, 5 * sizeof *moment);
+  for (int i = 0; i < SIDE * SIDE; i++) {
+    const double v = (double)of[i][channel], x = i % SIDE + 0.5, y = i / SIDE + 0.5;
+    moment[0] += v;
+    moment[1] += v * x;
+    moment[2] += v * y;
+    moment[3] += v * x * x;
+    moment[4] += v * y * y;
+  }
+  for (int k = 1; k < 5; k++) moment[k] /= moment[0];
+  for (int k = 3; k < 5; k++) moment[k] -= moment[k - 2] * moment[k - 2];
+}
+
+TEST(tents) {
+  static const float value[4] = {1, 2, 3, 0}, wide[2] = {7.5f, 3.25f};
+  double moment[5];
+  memset(map, 0, sizeof map);
+  abbe_exit_map_add(map, SIDE, 20.3f, 24.9f, value);
+  for (int channel = 0; channel < 3; channel++) {
+    find_moments((const float(*)[4])map, channel, moment);
+    assert_near(moment[0], channel + 1, 1e-6);
+    assert_near(moment[1], 20.3, 1e-5);
+    assert_near(moment[2], 24.9, 1e-5);
+    abbe_exit_map_smooth((const float(*)[4])map, SIDE, wide, smooth);
+    find_moments((const float(*)[4])smooth, channel, moment);
+    assert_near(moment[0], channel + 1, 1e-5);
+    assert_near(moment[1], 20.3, 1e-4);
+    assert_near(moment[2], 24.9, 1e-4);
+    for (int a = 0; a < 2; a++) /* a place among texels has a share of 1/4 at the most */
+      assert_near(moment[3 + a], (double)(wide[a] * wide[a]) / 6, 0.13);
+  }
+}
+
+/* At the ends nothing is lost, and an even map is even. */
+TEST(ends) {
+  static const float value[4] = {1, 0, 0, 0}, wide[2] = {9, 200};
+  static const float spot[][2] = {{0, 0}, {SIDE, 0}, {0.2f, SIDE}, {SIDE, SIDE}, {-1, 3}};
+  double moment[5];
+  for (size_t i = 0; i < sizeof spot / sizeof *spot; i++) {
+    memset(map, 0, sizeof map);
+    abbe_exit_map_add(map, SIDE, spot[i][0], spot[i][1], value);
+    abbe_exit_map_smooth((const float(*)[4])map, SIDE, wide, smooth);
+    find_moments((const float(*)[4])smooth, 0, moment);
+    assert_near(moment[0], 1, 1e-5);
+  }
+  for (int i = 0; i < SIDE * SIDE; i++) map[i][1] = 0.5f;
+  abbe_exit_map_smooth((const float(*)[4])map, SIDE, wide, smooth);
+  for (int i = 0; i < SIDE * SIDE; i++) assert_near((double)smooth[i][1], 0.5, 1e-6);
+}
+
+/* Narrow tents are what a place is already; a map of one texel has it all. */
+TEST(narrow) {
+  static const float value[4] = {1, 2, 3, 4}, wide[2] = {1, 0.5f}, wider[2] = {5, 5};
+  float one[1][4] = {{0}}, out[1][4];
+  memset(map, 0, sizeof map);
+  abbe_exit_map_add(map, SIDE, 10.6f, 11.2f, value);
+  abbe_exit_map_smooth((const float(*)[4])map, SIDE, wide, smooth);
+  assert_memory_equal(map, smooth, sizeof map);
+  abbe_exit_map_add(one, 1, 0.7f, 0.1f, value);
+  abbe_exit_map_smooth((const float(*)[4])one, 1, wider, out);
+  for (int k = 0; k < 4; k++) assert_near((double)out[0][k], (double)value[k], 1e-6);
 }

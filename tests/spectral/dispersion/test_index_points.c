@@ -1,8 +1,7 @@
 #include "tests/check.h"
 
-#include "spectral/dispersion/index_points.h"
-
 #include "base/file.h"
+#include "spectral/dispersion/index_points.h"
 
 #include <unistd.h>
 
@@ -150,4 +149,115 @@ TEST(what_cannot_be_sampled_is_refused) {
                                      cases[i].most, &p, &error));
     assert_null(p.n);
   }
+}
+
+static const abbe_dispersion a = {.model = ABBE_DISPERSION_CAUCHY, .count = 2, .c = {1.51, 0.0040}};
+static const abbe_dispersion b = {.model = ABBE_DISPERSION_CAUCHY, .count = 2, .c = {1.50, 0.0040}};
+static const abbe_dispersion steeper = {
+    .model = ABBE_DISPERSION_CAUCHY, .count = 2, .c = {1.50, 0.0050}};
+
+TEST(a_shift_is_its_own_size_everywhere) {
+  abbe_index_difference d;
+  OK(abbe_index_difference_of_curves(&a, &b, 380, 780, &d, &error));
+  assert_near(d.rms, 0.01, 1e-14);
+  assert_near(d.max, 0.01, 1e-14);
+  assert_near(d.mean, 0.01, 1e-14);
+  OK(abbe_index_difference_of_curves(&b, &a, 380, 780, &d, &error));
+  assert_near(d.mean, -0.01, 1e-14);
+  assert_near(d.max, 0.01, 1e-14);
+  OK(abbe_index_difference_of_curves(&a, &a, 380, 780, &d, &error));
+  assert_near(d.rms, 0, 0);
+  assert_near(d.max, 0, 0);
+}
+
+/* 0.001 / L^2: its mean square over L by hand is 1e-6 times (1/3) (a^-3 - b^-3) / (b - a). */
+TEST(a_steeper_curve_differs_most_in_the_violet) {
+  abbe_index_difference d;
+  OK(abbe_index_difference_of_curves(&steeper, &b, 380, 780, &d, &error));
+  assert_near(d.max_nm, 380, 0);
+  assert_near(d.max, 0.001 / (0.38 * 0.38), 1e-14);
+  double mean_square = (pow(0.38, -3) - pow(0.78, -3)) / 3 / 0.4;
+  assert_near(d.rms, 0.001 * sqrt(mean_square), 2e-6 * 3);
+  assert_near(d.mean, 0.001 * (1 / 0.38 - 1 / 0.78) / 0.4, 2e-6 * 3);
+}
+
+TEST(points_outside_the_range_are_left_out) {
+  double lambda_nm[] = {300, 500, 600, 900}, n[] = {9, 1.5, 1.5, 9};
+  const abbe_dispersion flat = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.51}};
+  const abbe_index_points points = {.count = 4, .lambda_nm = lambda_nm, .n = n};
+  abbe_index_difference d;
+  OK(abbe_index_difference_of_points(&flat, &points, 380, 780, &d, &error));
+  assert_near(d.max, 0.01, 1e-14);
+  assert_near(d.max_nm, 500, 0);
+  OK(abbe_index_difference_of_points(&flat, &points, -INFINITY, INFINITY, &d, &error));
+  assert_near(d.max, 7.49, 1e-12);
+}
+
+TEST(no_common_ground_is_refused) {
+  double lambda_nm[] = {500}, n[] = {1.5};
+  const abbe_index_points points = {.count = 1, .lambda_nm = lambda_nm, .n = n};
+  const abbe_dispersion pole = {.model = ABBE_DISPERSION_SELLMEIER2, .count = 3, .c = {0, 1, 0.3}};
+  abbe_index_difference d;
+  REFUSED(ABBE_INVALID_ARGUMENT, "600:700",
+          abbe_index_difference_of_points(&a, &points, 600, 700, &d, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "no real index at 500 nm",
+          abbe_index_difference_of_points(&pole, &points, 0, INFINITY, &d, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "",
+          abbe_index_difference_of_curves(&a, &pole, 380, 780, &d, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_index_difference_of_curves(&a, &b, 780, 380, &d, &error));
+}
+
+enum { COUNT = 36 };
+static double lambda_nm[COUNT], n[COUNT];
+
+static void set_up_law(double ior, double dispersion) {
+  for (int i = 0; i < COUNT; i++) {
+    lambda_nm[i] = 380 + 10 * i;
+    n[i] = ior * pow(dispersion, (555 - lambda_nm[i]) / 350);
+  }
+}
+
+/* As the manual states it: ior in the middle, the ratio of the ends. */
+TEST(the_law_is_that_of_the_manual) {
+  const abbe_povray_index index = {1.6, 1.04};
+  assert_near(abbe_povray_index_at(&index, 555), 1.6, 1e-15);
+  assert_near(abbe_povray_index_at(&index, 380) / abbe_povray_index_at(&index, 730), 1.04, 1e-15);
+  assert_near(abbe_povray_index_at(&index, 380), 1.6 * sqrt(1.04), 1e-15);
+}
+
+TEST(what_follows_the_law_is_found_whatever_the_weights) {
+  const double ratios[] = {0.97, 1.01, 1.2};
+  for (int k = 0; k < 3; k++) {
+    double weight[COUNT];
+    set_up_law(1.7, ratios[k]);
+    for (int i = 0; i < COUNT; i++) weight[i] = 1e6 * (i % 3);
+    abbe_povray_index alike = abbe_povray_index_fit(lambda_nm, n, NULL, COUNT);
+    abbe_povray_index weighted = abbe_povray_index_fit(lambda_nm, n, weight, COUNT);
+    assert_near(alike.ior, 1.7, 1e-12);
+    assert_near(alike.dispersion, ratios[k], 1e-12);
+    assert_near(weighted.ior, 1.7, 1e-12);
+    assert_near(weighted.dispersion, ratios[k], 1e-12);
+  }
+}
+
+/* Of two lines that disagree the fit goes with the one that weighs. */
+TEST(weights_decide) {
+  double weight[COUNT];
+  set_up_law(1.5, 1.02);
+  for (int i = 0; i < COUNT; i++) weight[i] = i % 2 == 0;
+  for (int i = 1; i < COUNT; i += 2) n[i] += 0.01;
+  abbe_povray_index index = abbe_povray_index_fit(lambda_nm, n, weight, COUNT);
+  assert_near(index.ior, 1.5, 1e-12);
+  index = abbe_povray_index_fit(lambda_nm, n, NULL, COUNT);
+  assert_near(index.ior, 1.505, 1e-4);
+}
+
+TEST(a_constant_index_has_no_dispersion) {
+  set_up_law(1.33, 1);
+  abbe_povray_index index = abbe_povray_index_fit(lambda_nm, n, NULL, COUNT);
+  assert_near(index.dispersion, 1, 0);
+  assert_near(index.ior, 1.33, 1e-14);
+  index = abbe_povray_index_fit(lambda_nm, n, NULL, 1);
+  assert_near(index.dispersion, 1, 0);
+  assert_near(index.ior, 1.33, 1e-14);
 }

@@ -4,7 +4,7 @@
 
 #include "spectral/editing/check.h"
 #include "spectral/editing/table_edit.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 
 static const abbe_finding *find(const abbe_findings *found, abbe_finding_kind kind) {
   for (size_t i = 0; i < found->count; i++)
@@ -399,9 +399,10 @@ TEST(crystals_have_indices_that_go_together) {
               {"{model: cauchy, coefficients: [1.48, 4000]}", 1},
               {"{model: sellmeier2, coefficients: [0, -2, 0.01]}", 1}};
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    OWNED(abbe_material_table, t) = checked_parse(printed("- {name: spar, model: cauchy, coefficients: [1.64, 0.007], range_nm: [350, 900],\n"
-             "   source: a book, extraordinary: %s}\n",
-             rows[i].extraordinary));
+    OWNED(abbe_material_table, t) = checked_parse(
+        printed("- {name: spar, model: cauchy, coefficients: [1.64, 0.007], range_nm: [350, 900],\n"
+                "   source: a book, extraordinary: %s}\n",
+                rows[i].extraordinary));
     OWNED(abbe_findings, found) = checked_table(&t);
     size_t count = 0;
     for (size_t k = 0; k < found.count; k++)

@@ -3,7 +3,6 @@
 #include "tests/spectral/same_material.h"
 
 #include "spectral/formats/material_import.h"
-#include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
 
 static abbe_material_table reread(const abbe_material_table *table, abbe_report *report) {

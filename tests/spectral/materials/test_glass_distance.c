@@ -3,7 +3,7 @@
 #include "tests/spectral/shipped_table.h"
 
 #include "spectral/dispersion/index_points.h"
-#include "spectral/materials/glass_distance.h"
+#include "spectral/materials/partners.h"
 
 static const char *name_of(const abbe_glass_distances *d, size_t i) {
   return shipped.material[d->nearest[i].index].name;

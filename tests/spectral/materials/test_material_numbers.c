@@ -1,7 +1,7 @@
 #include "tests/check.h"
 #include "tests/spectral/shipped_table.h"
 
-#include "spectral/materials/material_numbers.h"
+#include "spectral/materials/material_query.h"
 
 GROUP(shipped_load, shipped_free);
 

@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 #include "spectral/materials/table_compare.h"
 
 static abbe_material_table parse(const char *text) {

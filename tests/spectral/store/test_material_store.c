@@ -3,7 +3,7 @@
 #include "tests/spectral/same_material.h"
 
 #include "base/file.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 #include "spectral/store/material_store.h"
 
 #include <sqlite3.h>

@@ -1,5 +1,9 @@
 /* Metrics against values worked out by hand, laws, and noise that is known because it is made. */
+#include "tests/check.h"
+
 #include "tests/validation/measure/fields.h"
+#include "validation/measure/compare.h"
+#include "validation/measure/compare_state.h"
 
 TEST(equal_fields) {
   for (int what = 0; what < 2; what++) {
@@ -291,4 +295,132 @@ TEST(names) {
   assert_int_equal(abbe_compare_metric_find("rmse"), ABBE_COMPARE_METRIC_COUNT);
   assert_near(abbe_compare_deviation(ABBE_COMPARE_ENERGY_RATIO, 0.75), 0.25, 1e-15);
   assert_near(abbe_compare_deviation(ABBE_COMPARE_UV_MEAN, 0.75), 0.75, 0);
+}
+
+TEST(counts) {
+  abbe_ztest t = {0};
+  static const double z[] = {0, 1, -2, 2.5, -3.5, 3};
+  for (int i = 0; i < 6; i++) abbe_ztest_add(&t, z[i] * 0.25, 0.0625);
+  abbe_ztest_add(&t, 0, 0);
+  abbe_ztest_add(&t, 1e-30, 0);
+  abbe_ztest_add(&t, 1, NAN);
+  abbe_ztest_add(&t, NAN, 1);
+  abbe_ztest_add(&t, 1, INFINITY);
+  assert_int_equal(t.count, 6);
+  assert_near(abbe_ztest_share_over2(&t), 3.0 / 6, 1e-15);
+  assert_near(abbe_ztest_share_over3(&t), 1.0 / 6, 1e-15);
+  assert_near(abbe_ztest_mean_square(&t), (1 + 4 + 6.25 + 12.25 + 9) / 6, 1e-12);
+  assert_near(t.max, 3.5, 1e-12);
+  assert_int_equal(t.untested, 5);
+  assert_int_equal(t.untested_differ, 4);
+}
+
+TEST(nothing_tested) {
+  abbe_ztest t = {0};
+  assert_true(isnan(abbe_ztest_share_over2(&t)) && isnan(abbe_ztest_mean_square(&t)));
+  assert_true(isnan(abbe_ztest_critical(0, 0.01, 0)));
+  assert_true(isnan(abbe_ztest_critical(5, 0, 0)) && isnan(abbe_ztest_critical(5, 1, 0)));
+}
+
+/* As tables of the normal distribution and of Student's t print them. */
+TEST(tabulated_quantiles) {
+  assert_near(abbe_ztest_expected_share(2, 0), 0.04550026, 1e-8);
+  assert_near(abbe_ztest_expected_share(3, 0), 0.00269980, 1e-8);
+  assert_near(abbe_ztest_critical(1, 0.05, 0), 1.959964, 1e-6);
+  assert_near(abbe_ztest_critical(1, 0.01, 0), 2.575829, 1e-6);
+  assert_near(abbe_ztest_critical(1, 0.05, 10), 2.228139, 1e-6);
+  assert_near(abbe_ztest_critical(1, 0.01, 5), 4.032143, 1e-6);
+  assert_near(abbe_ztest_critical(1, 0.05, 1), 12.70620, 1e-5);
+  assert_near(abbe_ztest_expected_mean_square(10), 1.25, 0);
+  assert_near(abbe_ztest_expected_mean_square(0), 1, 0);
+  assert_true(isinf(abbe_ztest_expected_mean_square(2)));
+}
+
+/* Of count elements none exceeds it with the chance 1 - level: by the definition of the chance. */
+TEST(sidak) {
+  static const size_t counts[] = {2, 100, 196608, 100000000};
+  static const double freedoms[] = {0, 15, 63, 1e6};
+  for (int i = 0; i < 4; i++)
+    for (int k = 0; k < 4; k++) {
+      double z = abbe_ztest_critical(counts[i], 0.01, freedoms[k]);
+      double none = exp((double)counts[i] * log1p(-abbe_ztest_expected_share(z, freedoms[k])));
+      assert_near(none, 0.99, 1e-6);
+    }
+  assert_true(isfinite(abbe_ztest_critical(1000000, 0.01, 1)));
+}
+
+/* SSIM by its definition, where it is known in closed form and summed window by window. */
+
+enum { W = 17, H = 14 };
+
+static void map_of(const float *a, const float *b, float *out) {
+  OK(abbe_ssim_map(a, b, W, H, out, &error));
+}
+
+/* Two even greys have no structure: only the means count. */
+TEST(even_greys) {
+  float a[W * H], b[W * H], out[W * H];
+  for (int i = 0; i < W * H; i++) {
+    a[i] = 0.25f;
+    b[i] = 0.75f;
+  }
+  map_of(a, b, out);
+  for (int y = 0; y < H; y++)
+    for (int x = 0; x < W; x++) {
+      const bool inside = x >= 5 && x < W - 5 && y >= 5 && y < H - 5;
+      assert_int_equal(inside, !isnan(out[y * W + x]));
+      if (inside)
+        assert_near((double)out[y * W + x], (2 * 0.1875 + 1e-4) / (0.0625 + 0.5625 + 1e-4), 1e-6);
+    }
+}
+
+/* [Wang2004, eq. 13 to 16], every window summed for itself about its own means. */
+TEST(by_definition) {
+  float a[W * H], b[W * H], out[W * H];
+  for (int i = 0; i < W * H; i++) {
+    a[i] = (float)(0.5 + 0.4 * sin(1.7 * i) * cos(0.3 * i));
+    b[i] = (float)(0.45 + 0.3 * sin(1.7 * i + 0.4) * cos(0.29 * i));
+  }
+  map_of(a, b, out);
+  double least = 1;
+  for (int y = 5; y < H - 5; y++)
+    for (int x = 5; x < W - 5; x++) {
+      double sum = 0, ma = 0, mb = 0, va = 0, vb = 0, cov = 0;
+      for (int pass = 0; pass < 2; pass++)
+        for (int j = -5; j <= 5; j++)
+          for (int i = -5; i <= 5; i++) {
+            const double w = exp(-(i * i + j * j) / 4.5);
+            const double p = (double)a[(y + j) * W + x + i], q = (double)b[(y + j) * W + x + i];
+            if (pass == 0) {
+              sum += w;
+              ma += w * p;
+              mb += w * q;
+            } else {
+              va += w * (p - ma / sum) * (p - ma / sum);
+              vb += w * (q - mb / sum) * (q - mb / sum);
+              cov += w * (p - ma / sum) * (q - mb / sum);
+            }
+          }
+      ma /= sum;
+      mb /= sum;
+      const double expected = (2 * ma * mb + 1e-4) * (2 * cov / sum + 9e-4) /
+                              ((ma * ma + mb * mb + 1e-4) * ((va + vb) / sum + 9e-4));
+      assert_near((double)out[y * W + x], expected, 1e-6);
+      least = fmin(least, expected);
+    }
+  assert_true(least < 0.9);
+  map_of(a, a, out);
+  assert_near((double)out[6 * W + 6], 1, 1e-6);
+}
+
+/* A picture that no window fits into has no index anywhere; a value that is not finite spoils the
+ * windows that it is in alone. */
+TEST(edges) {
+  float a[W * H] = {0}, out[W * H];
+  OK(abbe_ssim_map(a, a, 10, 14, out, &error));
+  for (int i = 0; i < 140; i++) assert_true(isnan(out[i]));
+  a[5 * W + 0] = NAN;
+  map_of(a, a, out);
+  assert_true(isnan(out[5 * W + 5]));
+  assert_near((double)out[5 * W + 6], 1, 1e-6);
 }

@@ -1,6 +1,6 @@
 #include "validation/measure/file_comparison.h"
 
-#include "colorimetry/image/colour_map.h"
+#include "colorimetry/image/picture_space.h"
 #include "colorimetry/image/png_file.h"
 #include "tests/check.h"
 #include "tests/fontconfig.h"

@@ -1,6 +1,6 @@
 #include "validation/lab/known/known_answers.h"
 
-#include "base/nearest.h"
+#include "base/text.h"
 #include "validation/lab/known/known_group.h"
 
 #include <math.h>

@@ -1,7 +1,6 @@
 #include "validation/measure/gem/gem_light.h"
 
 #include "base/maths.h"
-#include "base/side_by_side.h"
 #include "validation/trace/transport/double_refraction.h"
 #include "validation/trace/transport/interface.h"
 #include "validation/trace/transport/random.h"

@@ -1,6 +1,6 @@
 #include "validation/trace/tracer/emission.h"
 
-#include "base/side_by_side.h"
+#include "base/maths.h"
 #include "validation/trace/transport/random.h"
 
 #include <stdlib.h>

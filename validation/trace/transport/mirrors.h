@@ -15,7 +15,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* One mirror's facets and grooves (scenes/shapes/brushing.h), in the frame; x 0: smooth. */
+/* One mirror's facets and grooves (scenes/shapes/shape.h), in the frame; x 0: smooth. */
 typedef struct abbe_mirror_lobe {
   float x, y, around, axis[3], centre[3];
 } abbe_mirror_lobe;

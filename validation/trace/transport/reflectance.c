@@ -1,7 +1,7 @@
 #include "validation/trace/transport/reflectance.h"
 
-#include "colorimetry/matrix3.h"
 #include "colorimetry/reflectance/reflected_light.h"
+#include "colorimetry/rgb_space.h"
 
 #include <assert.h>
 #include <stdlib.h>

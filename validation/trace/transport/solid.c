@@ -1,6 +1,6 @@
 #include "validation/trace/transport/solid.h"
 
-#include "base/side_by_side.h"
+#include "base/maths.h"
 #include "validation/trace/transport/geometry.h"
 
 #include <math.h>

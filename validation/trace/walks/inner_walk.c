@@ -1,6 +1,6 @@
 #include "validation/trace/walks/inner_walk.h"
 
-#include "base/side_by_side.h"
+#include "base/maths.h"
 #include "validation/trace/transport/geometry.h"
 #include "validation/trace/transport/interface.h"
 #include "validation/trace/transport/random.h"

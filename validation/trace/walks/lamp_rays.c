@@ -1,6 +1,6 @@
 #include "validation/trace/walks/light_path.h"
 
-#include "base/side_by_side.h"
+#include "base/maths.h"
 
 enum { FEW_FACES = 256 /* faces of receivers, compared with each other */ };
 

@@ -1,7 +1,6 @@
 #include "validation/trace/walks/projection_map.h"
 
 #include "base/maths.h"
-#include "base/side_by_side.h"
 #include "base/thread/watch.h"
 #include "validation/trace/transport/lamp_place.h"
 #include "validation/trace/transport/random.h"

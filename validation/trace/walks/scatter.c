@@ -1,6 +1,6 @@
 #include "validation/trace/walks/scatter.h"
 
-#include "base/side_by_side.h"
+#include "base/maths.h"
 #include "validation/trace/transport/interface.h"
 
 SIDE_BY_SIDE void abbe_scatter_packet(abbe_scatter *s) {

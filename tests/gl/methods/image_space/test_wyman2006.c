@@ -3,7 +3,7 @@
 #include "tests/gl/methods/image_space/image_pictures.h"
 
 #include "base/maths.h"
-#include "gl/scene/camera_view.h"
+#include "gl/scene/local_scene.h"
 
 static const abbe_fill fills[] = {ABBE_FILL_POINTS, ABBE_FILL_QUADS, ABBE_FILL_TRIANGLES,
                                   ABBE_FILL_GATHER_EYE, ABBE_FILL_GATHER_LIGHT};

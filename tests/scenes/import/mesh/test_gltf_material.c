@@ -3,7 +3,7 @@
 #include "tests/scenes/export/export_text.h"
 
 #include "scenes/import/mesh/gltf_material.h"
-#include "spectral/materials/material_numbers.h"
+#include "spectral/materials/material_query.h"
 
 #define FILE_NAME "/tmp/abbe-test-material.gltf"
 

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "base/maths.h"
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 #include "spectral/optics.h"
 #include "validation/lab/known/sphere_quadrature.h"
 

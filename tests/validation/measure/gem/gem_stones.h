@@ -4,7 +4,7 @@
 
 #include "tests/scenes/cuts/designs.h"
 
-#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_import.h"
 #include "validation/measure/gem/gem_optimum.h"
 #include "validation/measure/gem/gem_view.h"
 

@@ -3,7 +3,7 @@
 
 #include "base/maths.h"
 #include "colorimetry/upsampling.h"
-#include "scenes/view/coverage.h"
+#include "scenes/view/view.h"
 #include "validation/trace/transport/environment_light.h"
 
 #define SPECK                                                                                      \
