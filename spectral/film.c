@@ -80,6 +80,10 @@ void abbe_film_light_at(const abbe_film_layer *layer, size_t count, bool reverse
     out->r[p][1] = cimag(r);
     out->reflected[p] = fmin(creal(r * conj(r)), 1);
     out->transmitted[p] = grazing ? 0 : arrives[p] * leaves[p] / (size * size);
+    /* both amplitudes come by one phase from the wave that 1 is behind the films */
+    const double complex t = grazing ? 0 : sqrt(out->transmitted[p]) * conj(sum) / cabs(sum);
+    out->t[p][0] = creal(t);
+    out->t[p][1] = cimag(t);
   }
 }
 

@@ -27,6 +27,7 @@ typedef struct abbe_film_light {
   double reflected[2], transmitted[2]; /* shares */
   double r[2][2];                      /* amplitude, real and imaginary part; of p by the magnetic
                                           field: (n2 c1 - n1 c2) / (n2 c1 + n1 c2) at a bare face */
+  double t[2][2]; /* the same of what is transmitted, of the root of its share in size */
 } abbe_film_light;
 
 /* Light of lambda_nm that comes from index n_from, above 0, at the cosine cos_i, 0 to 1, through

@@ -1,4 +1,4 @@
-foreach(name wavelengths spectrum optics film microfacets biaxial uniaxial uniaxial_answers
+foreach(name wavelengths spectrum optics film polarisation microfacets biaxial uniaxial uniaxial_answers
         dispersion index_points fit points csv_points
         material material_numbers material_query material_table crystal_record partners absorption glass_distance convert
         table_compare
