@@ -72,11 +72,12 @@ abbe_result abbe_lib_scene_map(abbe_lib_scene *scene, const char *light, size_t 
 /* The reference: every path with its own wavelength, and standard errors from two passes on
  * (channels stderr.*, caustic.*). Settings: passes (64, unless seconds or error is given), seconds,
  * error (relative standard error), width, height, photons (a pass), bands, seed, threads, min_nm,
- * max_nm, space, observer, physics (full, or matched: what the renderer models and no more), filter
- * (1: less noise, by non-local means), map_size (a side), light (whose map), checkpoint (a file
- * that a stopped trace is kept in and goes on from). like: a map, for a map of the same texels, or
- * of map_size of them in the same place; or NULL. picture and map may be NULL: then that is left
- * out. ABBE_INVALID_ARGUMENT, ABBE_OUT_OF_RANGE, ABBE_UNSUPPORTED, ABBE_CANCELLED, ABBE_NO_MEMORY.
+ * max_nm, space, observer, physics (full, or matched: what the renderer models and no more),
+ * polarisation (auto: where there are polarisers; on; off), filter (1: less noise, by non-local
+ * means), map_size (a side), light (whose map), checkpoint (a file that a stopped trace is kept in
+ * and goes on from). like: a map, for a map of the same texels, or of map_size of them in the same
+ * place; or NULL. picture and map may be NULL: then that is left out. ABBE_INVALID_ARGUMENT,
+ * ABBE_OUT_OF_RANGE, ABBE_UNSUPPORTED, ABBE_CANCELLED, ABBE_NO_MEMORY.
  */
 abbe_result abbe_lib_scene_trace(abbe_lib_scene *scene, const char *const *settings, size_t count,
                                  const abbe_lib_picture *like, abbe_lib_picture **picture,

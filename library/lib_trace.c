@@ -16,7 +16,7 @@ typedef struct request {
   abbe_trace_run_desc run;
   const char *light;
   size_t seed, map_size;
-  int physics, space, observer;
+  int physics, polarisation, space, observer;
   bool filter;
   abbe_map_layout layout;
 } request;
@@ -25,6 +25,7 @@ typedef struct request {
 static const char *const spaces[] = {ABBE_RGB_SPACES(NAME_OF_3)};
 static const char *const observers[] = {ABBE_OBSERVERS(NAME_OF_3)};
 static const char *const physics[] = {"full", "matched"};
+static const char *const polarisations[] = {"auto", "on", "off"};
 
 static abbe_result read_request(const char *const *settings, size_t count, request *q,
                                 abbe_error *error) {
@@ -44,6 +45,7 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
       ABBE_LIB_CHOICE("space", &q->space, spaces),
       ABBE_LIB_CHOICE("observer", &q->observer, observers),
       ABBE_LIB_CHOICE("physics", &q->physics, physics),
+      ABBE_LIB_CHOICE("polarisation", &q->polarisation, polarisations),
       ABBE_LIB_FLAG("filter", &q->filter),
       ABBE_LIB_COUNT("map_size", &q->map_size, 1, ABBE_TRACER_MAX_SIDE),
       ABBE_LIB_TEXT("light", &q->light),
@@ -55,6 +57,7 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
   d->seed = (uint32_t)q->seed;
   d->space = (abbe_rgb_space)q->space;
   d->observer = (abbe_observer)q->observer;
+  d->polarisation = (abbe_trace_polarisation)q->polarisation;
   d->guides = q->filter;
   d->map_width = d->map_height = q->map_size;
   q->run.checkpoint_s = CHECKPOINT_S;

@@ -121,6 +121,20 @@ bool abbe_scene_is_hazy(const abbe_scene *scene) {
   return hazy;
 }
 
+bool abbe_scene_is_polarised(const abbe_scene *scene) {
+  bool any = scene->camera.polariser.kind != ABBE_POLARISER_NONE;
+  for (size_t i = 0; i < scene->light_count; i++)
+    any = any || scene->light[i].polariser.kind != ABBE_POLARISER_NONE;
+  return any;
+}
+
+void abbe_light_upright(const double direction[3], double across[3], double up[3]) {
+  const double z[3] = {0, 0, 1}, y[3] = {0, 1, 0}, upright = 1e-6;
+  abbe_vector_cross(hypot(direction[0], direction[1]) < upright ? y : z, direction, across);
+  abbe_vector_normalise(across);
+  abbe_vector_cross(direction, across, up);
+}
+
 const abbe_object *abbe_scene_mirror(const abbe_scene *scene) {
   for (size_t i = 0; i < scene->object_count; i++)
     if (scene->object[i].mirror) return &scene->object[i];

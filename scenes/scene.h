@@ -30,6 +30,20 @@
 #define ABBE_SCENE_MAX_OBJECTS 1024
 #define ABBE_SCENE_MAX_PLANES 256 /* planes of one convex refractor */
 
+typedef enum abbe_polariser_kind {
+  ABBE_POLARISER_NONE,
+  ABBE_POLARISER_LINEAR,
+  ABBE_POLARISER_RIGHT, /* circular: clockwise to one who looks into the light */
+  ABBE_POLARISER_LEFT
+} abbe_polariser_kind;
+
+/* An ideal sheet, which passes half of unpolarised light. */
+typedef struct abbe_polariser {
+  abbe_polariser_kind kind;
+  double angle_rad; /* linear: of what passes, from the horizontal, anticlockwise to one who looks
+                       into the light of a light, or through the camera */
+} abbe_polariser;
+
 typedef struct abbe_camera {
   double eye[3], target[3], up[3];
   double fov_y_rad;     /* full vertical angle */
@@ -39,6 +53,7 @@ typedef struct abbe_camera {
   double focus;         /* m, how far along its view things are sharp; 0 of a pinhole */
   double exposure;      /* stops that a display adds, -60 to 60 */
   bool exposed;         /* not these: such as each picture's own light wants */
+  abbe_polariser polariser;
 } abbe_camera;
 
 typedef enum abbe_light_kind {
@@ -65,7 +80,8 @@ typedef struct abbe_light {
   double power;     /* W/sr, W/m2 or W/(m2 sr) over the rendered wavelength range, shared out over
                        wavelength by the illuminant */
   abbe_illuminant illuminant;
-  char *illuminant_path; /* the file that it is of, or NULL */
+  char *illuminant_path;    /* the file that it is of, or NULL */
+  abbe_polariser polariser; /* not of a point; `power` is without it */
 } abbe_light;
 
 typedef enum abbe_exact_kind {
@@ -166,6 +182,13 @@ static inline const char *abbe_object_kind_name(abbe_object_kind kind) {
 
 /* Whether light is scattered or absorbed in the air, or scattered in a refractor. */
 bool abbe_scene_is_hazy(const abbe_scene *scene);
+
+/* Whether there is a polariser on the camera or on a light. */
+bool abbe_scene_is_polarised(const abbe_scene *scene);
+
+/* Where a light's polariser has its angle 0 (across) and 90 degrees: unit, at right angles to the
+ * direction; up is z, or y where it shines along z. */
+void abbe_light_upright(const double direction[3], double across[3], double up[3]);
 
 /* The first mirror, or NULL. */
 const abbe_object *abbe_scene_mirror(const abbe_scene *scene);

@@ -454,10 +454,12 @@ static void meet(const abbe_biaxial *media[2], const double n[3], const abbe_bia
     for (int r = 0; r < 4; r++) m[r][i] = i < 2 ? -column[r] : column[r];
   }
   abbe_boundary_solve(m, count);
-  for (int c = 0; c < count; c++)
+  for (int c = 0; c < count; c++) {
     for (int i = 0; i < 4; i++)
       tell(media[i / 2], frame, i & 1, &waves[i], i < 2 ? m[i][4 + c] : exp(-decay) * m[i][4 + c],
            incident[c].flux, i < 2 ? &out[c].reflected[i] : &out[c].transmitted[i - 2]);
+    to_world(frame, incident[c].e, out[c].field);
+  }
 }
 
 void abbe_biaxial_meet(const abbe_biaxial *from, const abbe_biaxial *to, const double n[3],
@@ -475,18 +477,24 @@ void abbe_biaxial_meet(const abbe_biaxial *from, const abbe_biaxial *to, const d
   *out = made[0];
 }
 
-void abbe_biaxial_meet_unpolarised(const abbe_biaxial *from, const abbe_biaxial *to,
-                                   const double n[3], const double ray[3],
-                                   const abbe_biaxial_film *film, abbe_biaxial_split *out) {
+void abbe_biaxial_meet_both(const abbe_biaxial *from, const abbe_biaxial *to, const double n[3],
+                            const double ray[3], const abbe_biaxial_film *film,
+                            abbe_biaxial_split out[COME]) {
   const abbe_biaxial *media[2] = {from, to};
-  abbe_biaxial_split both[COME];
   if (abbe_vector_dot(ray, n) < -grazing) {
     abbe_biaxial_state coming;
     abbe_biaxial_of_ray(from, ABBE_BIAXIAL_FAST, ray, &coming);
-    meet(media, n, &coming, 0, COME, film, both);
+    meet(media, n, &coming, 0, COME, film, out);
   } else {
-    for (int i = 0; i < COME; i++) graze(from, n, (abbe_biaxial_mode)i, ray, &both[i]);
+    for (int i = 0; i < COME; i++) graze(from, n, (abbe_biaxial_mode)i, ray, &out[i]);
   }
+}
+
+void abbe_biaxial_meet_unpolarised(const abbe_biaxial *from, const abbe_biaxial *to,
+                                   const double n[3], const double ray[3],
+                                   const abbe_biaxial_film *film, abbe_biaxial_split *out) {
+  abbe_biaxial_split both[COME];
+  abbe_biaxial_meet_both(from, to, n, ray, film, both);
   *out = both[1];
   for (int i = 0; i < 2; i++) {
     out->reflected[i].share = (both[0].reflected[i].share + both[1].reflected[i].share) / 2;

@@ -77,6 +77,7 @@ typedef struct abbe_biaxial_film {
  * and p, in this order. */
 typedef struct abbe_biaxial_split {
   abbe_biaxial_wave reflected[2], transmitted[2];
+  double field[3]; /* the unit direction of the incident electric field */
 } abbe_biaxial_split;
 
 /* What becomes of a wave whose ray comes from one medium (dot(ray, n) < 0) to the face of another.
@@ -85,6 +86,11 @@ typedef struct abbe_biaxial_split {
 void abbe_biaxial_meet(const abbe_biaxial *from, const abbe_biaxial *to, const double n[3],
                        abbe_biaxial_mode mode, const double ray[3], const abbe_biaxial_film *film,
                        abbe_biaxial_split *out);
+
+/* The same for s and p of an isotropic medium, each of which leaves as the same waves. */
+void abbe_biaxial_meet_both(const abbe_biaxial *from, const abbe_biaxial *to, const double n[3],
+                            const double ray[3], const abbe_biaxial_film *film,
+                            abbe_biaxial_split out[2]);
 
 /* The same for unpolarised light in an isotropic medium: shares are the means over s and p. */
 void abbe_biaxial_meet_unpolarised(const abbe_biaxial *from, const abbe_biaxial *to,

@@ -272,16 +272,21 @@ void abbe_uniaxial_meet(const abbe_uniaxial *from, const abbe_uniaxial *to, cons
     graze(from, n, mode, ray, out);
 }
 
+void abbe_uniaxial_meet_both(const abbe_uniaxial *from, const abbe_uniaxial *to, const double n[3],
+                             const double ray[3], abbe_uniaxial_split out[COME]) {
+  if (abbe_vector_dot(ray, n) < -grazing) {
+    meet(from, to, n, ABBE_UNIAXIAL_ORDINARY, COME, ray, out);
+  } else {
+    graze(from, n, ABBE_UNIAXIAL_ORDINARY, ray, &out[0]);
+    graze(from, n, ABBE_UNIAXIAL_EXTRAORDINARY, ray, &out[1]);
+  }
+}
+
 void abbe_uniaxial_meet_unpolarised(const abbe_uniaxial *from, const abbe_uniaxial *to,
                                     const double n[3], const double ray[3],
                                     abbe_uniaxial_split *out) {
   abbe_uniaxial_split both[COME];
-  if (abbe_vector_dot(ray, n) < -grazing) {
-    meet(from, to, n, ABBE_UNIAXIAL_ORDINARY, COME, ray, both);
-  } else {
-    graze(from, n, ABBE_UNIAXIAL_ORDINARY, ray, &both[0]);
-    graze(from, n, ABBE_UNIAXIAL_EXTRAORDINARY, ray, &both[1]);
-  }
+  abbe_uniaxial_meet_both(from, to, n, ray, both);
   *out = both[1];
   for (int i = 0; i < 2; i++) {
     out->reflected[i].share = (both[0].reflected[i].share + both[1].reflected[i].share) / 2;

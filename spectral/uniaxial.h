@@ -71,6 +71,10 @@ typedef struct abbe_uniaxial_split {
 void abbe_uniaxial_meet(const abbe_uniaxial *from, const abbe_uniaxial *to, const double n[3],
                         abbe_uniaxial_mode mode, const double ray[3], abbe_uniaxial_split *out);
 
+/* The same for s and p of an isotropic medium, each of which leaves as the same waves. */
+void abbe_uniaxial_meet_both(const abbe_uniaxial *from, const abbe_uniaxial *to, const double n[3],
+                             const double ray[3], abbe_uniaxial_split out[2]);
+
 /* The same for unpolarised light in an isotropic medium: shares are the means over s and p, and
  * the amplitudes those of p. */
 void abbe_uniaxial_meet_unpolarised(const abbe_uniaxial *from, const abbe_uniaxial *to,

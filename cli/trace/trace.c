@@ -23,6 +23,7 @@ enum {
   OPTION_TIME,
   OPTION_UNTIL_ERROR,
   OPTION_PHYSICS,
+  OPTION_POLARISATION,
   OPTION_PHOTONS,
   OPTION_SIZE,
   OPTION_MAP,
@@ -64,6 +65,9 @@ static const struct argp_option options[] = {
     {"photons", OPTION_PHOTONS, "N", 0, "photons a pass (1048576, or four a pixel)", 1},
     {"physics", OPTION_PHYSICS, "NAME", 0,
      "full, or matched: what the renderer's plan models and no more", 1},
+    {"polarisation", OPTION_POLARISATION, "NAME", 0,
+     "auto: polarised light where the scene has polarisers; or on, or off, which leaves them out",
+     1},
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
     {"map", OPTION_MAP, "N|WxH", 0, "texels a side of the receiver map, or across and down (512)",
      1},
@@ -94,6 +98,7 @@ static const struct argp_option options[] = {
 #define ABBE_NAME_OF_3(code, name, ocio) name,
 static const char *const spaces[] = {ABBE_RGB_SPACES(ABBE_NAME_OF_3)};
 static const char *const physics[] = {"full", "matched"};
+static const char *const polarisations[] = {"auto", "on", "off"};
 
 /* "8:16". */
 static void take_passes(request *q, const char *text) {
@@ -144,6 +149,10 @@ static error_t parse_work(int key, char *text, request *q) {
     return 0;
   case OPTION_PHYSICS:
     d->physics.matched = abbe_command_choice(p, "--physics", text, physics, 2) == 1;
+    return 0;
+  case OPTION_POLARISATION:
+    d->polarisation =
+        (abbe_trace_polarisation)abbe_command_choice(p, "--polarisation", text, polarisations, 3);
     return 0;
   case OPTION_SIZE:
     abbe_command_size(p, "--size", text, ABBE_TRACER_MAX_SIDE, &d->width, &d->height);

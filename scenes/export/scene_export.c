@@ -120,6 +120,8 @@ static void survey_light(const survey *s, const abbe_light *light) {
             soft ? ", and its edge fades with the fourth power of the cosine" : "");
   if (soft && target == ABBE_SCENE_EXPORT_GLTF)
     CHANGED(s, light->name, "its edge fades as the viewer has it");
+  if (light->polariser.kind != ABBE_POLARISER_NONE)
+    LOST(s, light->name, "its polariser: twice the light that it passes");
   if (!abbe_light_has_size(light)) return;
   if (light->kind == ABBE_LIGHT_DISK && !s->spheres)
     CHANGED(s, light->name, "the disk has %d straight sides and its own area",
@@ -141,6 +143,8 @@ static void survey_surroundings(const survey *s) {
   if (s->scene->camera.aperture > 0)
     LOST(s, "camera", "its aperture: all is sharp, not only what is %.4g m along its view",
          s->scene->camera.focus);
+  if (s->scene->camera.polariser.kind != ABBE_POLARISER_NONE)
+    LOST(s, "camera", "its polariser: twice the light that it passes");
   if (s->scene->ambient > 0)
     LOST(s, "ambient", "the format has no light without shadows (%.3g W/m2)", s->scene->ambient);
   if (s->scene->background > 0)

@@ -128,6 +128,7 @@ abbe_result abbe_camera_read(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera *
   if (result == ABBE_OK) result = read_lens(yaml, node, &number, error);
   if (result == ABBE_OK) result = read_aperture(yaml, node, &number, error);
   if (result == ABBE_OK) result = read_exposure(yaml, node, out, error);
+  if (result == ABBE_OK) result = abbe_scene_value_polariser(yaml, node, &out->polariser, error);
   return result == ABBE_OK ? abbe_yaml_check_keys(yaml, node, "the camera", error) : result;
 }
 

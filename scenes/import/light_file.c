@@ -87,16 +87,12 @@ static abbe_result read_side(abbe_yaml *yaml, abbe_yaml_node node, const char *k
  * normal. */
 static abbe_result read_rectangle(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
                                   abbe_error *error) {
-  const double z[3] = {0, 0, 1}, y[3] = {0, 1, 0}, upright = 1e-6;
   double width = 0, height = 0, roll = 0, across[3], up[3];
   abbe_result result = read_side(yaml, node, "width", &width, error);
   if (result == ABBE_OK) result = read_side(yaml, node, "height", &height, error);
   if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "roll", -360, 360, &roll, error);
   if (result != ABBE_OK) return result;
-  const double *n = out->direction;
-  abbe_vector_cross(hypot(n[0], n[1]) < upright ? y : z, n, across);
-  abbe_vector_normalise(across);
-  abbe_vector_cross(n, across, up);
+  abbe_light_upright(out->direction, across, up);
   const double c = cos(roll * ABBE_DEGREE), s = sin(roll * ABBE_DEGREE);
   for (int k = 0; k < 3; k++) {
     out->edge[0][k] = 0.5 * width * (c * across[k] + s * up[k]);
@@ -193,6 +189,10 @@ static abbe_result read_light(abbe_yaml *yaml, abbe_yaml_node node, const char *
   if (result == ABBE_OK)
     result = abbe_scene_value_illuminant(yaml, node, folder, &out->illuminant,
                                          &out->illuminant_path, error);
+  if (result == ABBE_OK && out->kind == ABBE_LIGHT_POINT)
+    result = refuse_key(yaml, node, "polariser", kind,
+                        "a sheet is flat, and it shines to all sides: take a spot", error);
+  if (result == ABBE_OK) result = abbe_scene_value_polariser(yaml, node, &out->polariser, error);
   if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "a light", error);
   return result;
 }

@@ -1,5 +1,7 @@
 #include "scenes/import/scene_value.h"
 
+#include "base/maths.h"
+
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -76,4 +78,21 @@ abbe_result abbe_scene_value_illuminant(abbe_yaml *yaml, abbe_yaml_node mapping,
   free(joined);
   free(name);
   return result;
+}
+
+abbe_result abbe_scene_value_polariser(abbe_yaml *yaml, abbe_yaml_node mapping, abbe_polariser *out,
+                                       abbe_error *error) {
+  static const char *const kinds[] = {"linear", "right", "left", NULL};
+  const abbe_yaml_node node = abbe_yaml_get(yaml, mapping, "polariser");
+  if (node.id == 0) return ABBE_OK;
+  int kind = 0;
+  double angle = 0;
+  abbe_result result = abbe_yaml_get_choice(yaml, node, "kind", kinds, &kind, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(yaml, node, "angle", -360, 360, &angle, error);
+  if (result == ABBE_OK && kind != 0 && abbe_yaml_get(yaml, node, "angle").id != 0)
+    return abbe_yaml_fail(yaml, node, error,
+                          "a circular polariser is alike at every 'angle': leave it out");
+  *out = (abbe_polariser){(abbe_polariser_kind)(kind + 1), angle * ABBE_DEGREE};
+  return result == ABBE_OK ? abbe_yaml_check_keys(yaml, node, "a polariser", error) : result;
 }

@@ -1,11 +1,12 @@
 /* scene_value.h: values that the entries of a scene file share: paths, places of errors, points,
- * illuminants. */
+ * illuminants, polarisers. */
 #ifndef ABBE_SCENES_IMPORT_SCENE_VALUE_H
 #define ABBE_SCENES_IMPORT_SCENE_VALUE_H
 
 #include "base/error.h"
 #include "base/yaml/yaml.h"
 #include "colorimetry/illuminant.h"
+#include "scenes/scene.h"
 
 /* No coordinate or length of a scene, in metres, may be larger. */
 #define ABBE_SCENE_FAR 1e6
@@ -36,5 +37,9 @@ abbe_result abbe_scene_value_time(abbe_yaml *yaml, double *out, abbe_error *erro
  * line. */
 abbe_result abbe_scene_value_illuminant(abbe_yaml *yaml, abbe_yaml_node mapping, const char *folder,
                                         abbe_illuminant *out, char **path, abbe_error *error);
+
+/* The key 'polariser' of the camera or a light; an absent one leaves *out. */
+abbe_result abbe_scene_value_polariser(abbe_yaml *yaml, abbe_yaml_node mapping, abbe_polariser *out,
+                                       abbe_error *error);
 
 #endif

@@ -5,6 +5,7 @@
 #include "colorimetry/pleochroism.h"
 #include "colorimetry/weights.h"
 #include "spectral/biaxial.h"
+#include "spectral/film.h"
 #include "spectral/optics.h"
 #include "spectral/uniaxial.h"
 
@@ -365,6 +366,54 @@ static void note_volume(const abbe_scene *scene, abbe_plan *plan) {
   }
 }
 
+/* Thinner than a quarter of its diagonal between two parallel faces. */
+static bool is_pane(const abbe_object *o) {
+  const abbe_exact *e = &o->exact;
+  double diagonal = 0;
+  if (o->material == NULL || e->kind != ABBE_EXACT_CONVEX) return false;
+  for (int k = 0; k < 3; k++) diagonal = hypot(diagonal, o->max[k] - o->min[k]);
+  for (size_t i = 0; i < e->count; i++)
+    for (size_t j = 0; j < i; j++)
+      if (abbe_vector_dot(e->plane[i], e->plane[j]) < -1 + 1e-9 &&
+          e->plane[i][3] + e->plane[j][3] < 0.25 * diagonal)
+        return true;
+  return false;
+}
+
+/* What a clear pane reflects at that angle, of each polarisation by itself and of their mean. */
+static void note_pane(const abbe_object *o, double lambda_nm, abbe_plan *plan) {
+  const double degrees = 60;
+  abbe_film_light light;
+  double to[2] = {1, 0};
+  if (!is_pane(o) || abbe_material_n(o->material, lambda_nm, &to[0], NULL) != ABBE_OK) return;
+  abbe_film_light_at(NULL, 0, false, 1, to, cos(degrees * ABBE_DEGREE), lambda_nm, &light);
+  const double s = light.reflected[ABBE_FILM_S], p = light.reflected[ABBE_FILM_P];
+  abbe_plan_note(plan,
+                 "%s: polarisation matters, for two slanted faces lie on one path: by their mean "
+                 "it reflects %.4f of light at %g degrees, and %.4f by each polarisation ('abbe "
+                 "trace --polarisation on')",
+                 o->name, 2 * (s + p) / (2 + s + p), degrees, s / (1 + s) + p / (1 + p));
+}
+
+/* Polarisers, and crystals between them. */
+static void note_polarisation(const abbe_scene *scene, abbe_plan *plan) {
+  const char *text = "%s: polarisation matters: its polariser is left out, and with it the half or "
+                     "more of the light that it takes; 'abbe trace' follows polarised light";
+  if (!abbe_scene_is_polarised(scene)) return;
+  if (scene->camera.polariser.kind != ABBE_POLARISER_NONE) abbe_plan_note(plan, text, "camera");
+  for (size_t i = 0; i < scene->light_count; i++)
+    if (scene->light[i].polariser.kind != ABBE_POLARISER_NONE)
+      abbe_plan_note(plan, text, scene->light[i].name);
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *o = &scene->object[i];
+    if (o->material != NULL && abbe_material_is_crystal(o->material))
+      abbe_plan_note(plan,
+                     "%s: 'abbe trace' adds its two waves by power, so colours of thin plates are "
+                     "not there, and no optical activity",
+                     o->name);
+  }
+}
+
 void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan) {
   note_volume(scene, plan);
   for (size_t i = 0; i < scene->object_count; i++) {
@@ -372,6 +421,9 @@ void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan) {
     for (size_t k = 0; o->coatings != NULL && k < o->coatings->count; k++)
       note_film(o, &o->coatings->coating[k], plan);
   }
+  for (size_t i = 0; i < scene->object_count; i++)
+    note_pane(&scene->object[i], (plan->desc.min_nm + plan->desc.max_nm) / 2, plan);
+  note_polarisation(scene, plan);
   if (scene->camera.aperture > 0)
     abbe_plan_note(plan, "the camera's aperture is left out: all is sharp; 'abbe trace' has it");
   if (plan->camera_sees_refractor && !shine_alike(scene, plan->desc.min_nm, plan->desc.max_nm))

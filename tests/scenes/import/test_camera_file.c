@@ -80,6 +80,7 @@ TEST(what_cannot_be_framed_is_named) {
       {"{" STANDS ", focus: ball}", "'focus' goes with an 'aperture'"},
       {"{" STANDS ", exposure: bright}", "'auto' or stops such as 1.5"},
       {"{" STANDS ", exposure: 61}", "61"},
+      {"{" STANDS ", polariser: {kind: bright}}", "did you mean 'right'"},
       {"{" STANDS ", aperture: 8, focus: bal}", "did you mean 'ball'"},
       {"{" STANDS ", fov: 30, lens: macro-100mm}", "leave out the 'fov'"},
       {"{" STANDS ", aperture: 0}", "range from 0.5"},

@@ -1,6 +1,7 @@
 /* The lights of a scene file: what kinds have, and what is refused. */
 #include "tests/check.h"
 
+#include "base/maths.h"
 #include "base/yaml/yaml.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/import/scene_reading.h"
@@ -42,6 +43,28 @@ TEST(each_kind_is_read) {
   abbe_lights_free(NULL, 0);
 }
 
+#define SUN_THROUGH(sheet)                                                                         \
+  "lights:\n- {kind: directional, direction: [0, 0, -1], irradiance: 1, polariser: " sheet "}\n"
+
+TEST(polarisers_are_read) {
+  static const struct {
+    const char *text;
+    abbe_polariser_kind kind;
+    double degrees;
+  } rows[] = {{SUN_THROUGH("{angle: 30}"), ABBE_POLARISER_LINEAR, 30},
+              {SUN_THROUGH("{kind: linear}"), ABBE_POLARISER_LINEAR, 0},
+              {SUN_THROUGH("{kind: right}"), ABBE_POLARISER_RIGHT, 0},
+              {SUN_THROUGH("{kind: left}"), ABBE_POLARISER_LEFT, 0}};
+  for (size_t i = 0; i < 4; i++) {
+    abbe_light *light;
+    size_t count;
+    OK(read(rows[i].text, &light, &count, &error));
+    assert_int_equal(light->polariser.kind, rows[i].kind);
+    assert_near(light->polariser.angle_rad, rows[i].degrees * ABBE_DEGREE, 1e-15);
+    abbe_lights_free(light, count);
+  }
+}
+
 TEST(what_no_light_has_is_refused) {
   static const char *const bad[][2] = {
       {"lights: 3\n", "'lights' wants a list"},
@@ -49,6 +72,13 @@ TEST(what_no_light_has_is_refused) {
       {"lights:\n- {kind: point, position: [0, 0, 1]}\n", "intensity"},
       {"lights:\n- {kind: point, position: [0, 0, 1], intensity: 1, cone: 4}\n",
        "lights.yaml:2: a point light has no 'cone'"},
+      {"lights:\n- {kind: point, position: [0, 0, 1], intensity: 1, polariser: {angle: 4}}\n",
+       "lights.yaml:2: a point light has no 'polariser'; a sheet is flat"},
+      {SUN_THROUGH("{kind: round}"), "'kind: round' is not known"},
+      {SUN_THROUGH("{angle: 400}"), "'angle: 400' is not in the range from -360 to 360"},
+      {SUN_THROUGH("{kind: left, angle: 4}"), "alike at every 'angle'"},
+      {SUN_THROUGH("{angel: 4}"), "did you mean 'angle'"},
+      {SUN_THROUGH("3"), "polariser"},
       {"lights:\n- {kind: point, position: [0, 0, 1], intensity: 1}\n"
        "- {kind: directional, direction: [0, 0, 0], irradiance: 1}\n",
        "lights.yaml:3: the light's direction is zero"},

@@ -43,6 +43,7 @@ static uint64_t hash_light(uint64_t h, const abbe_light *l) {
                             l->direction[0], l->direction[1], l->direction[2], l->radius,
                             l->cone_rad,     l->soft_rad,     l->power};
   h = hash_doubles(h, numbers, sizeof numbers / sizeof *numbers);
+  h = hash_doubles(h, (double[]){l->polariser.kind, l->polariser.angle_rad}, 2);
   return l->kind == ABBE_LIGHT_RECTANGLE ? hash_doubles(h, l->edge[0], 6) : h;
 }
 
@@ -81,8 +82,9 @@ static uint64_t hash_scene(const abbe_tracer *t) {
   h = hash_doubles(h, s->camera.eye, 3);
   h = hash_doubles(h, s->camera.target, 3);
   h = hash_doubles(h, s->camera.up, 3);
-  const double loose[] = {s->camera.fov_y_rad, s->ambient, s->background};
-  h = hash_doubles(h, loose, 3);
+  const double loose[] = {s->camera.fov_y_rad, s->ambient, s->background, s->camera.polariser.kind,
+                          s->camera.polariser.angle_rad};
+  h = hash_doubles(h, loose, 5);
   const double lens[] = {s->camera.aperture, s->camera.focus};
   if (s->camera.aperture > 0) h = hash_doubles(h, lens, 2);
   if (s->transparent) h = hash(h, &s->transparent, sizeof s->transparent);
@@ -138,12 +140,11 @@ static void describe(const abbe_tracer *t, char *out, size_t size) {
   const bool usual = d->observer == ABBE_OBSERVER_CIE_1931;
   abbe_number_format(
       out, size,
-      "physics %s, %zu exits, share %.17g, of the eye %zu, %.17g\npicture %zu x %zu\nguides "
-      "%s\nmap %zu "
-      "x %zu of light %zu\n"
+      "physics %s, %zu exits, share %.17g, of the eye %zu, %.17g\npicture %zu x %zu\nguides %s\n"
+      "map %zu x %zu of light %zu\n"
       "range %.17g:%.17g\nbands %zu\nspace %s%s%s\nphotons %zu\nseed %u\nscene %016llx\n"
       "layout %016llx\ninstructions %s\n\n",
-      d->physics.matched ? "matched" : "full", d->physics.matched ? d->physics.orders : 0,
+      abbe_tracer_physics(t), d->physics.matched ? d->physics.orders : 0,
       d->physics.matched ? d->physics.energy_share : 0,
       d->physics.matched ? d->physics.eye_orders : 0, d->physics.matched ? d->physics.eye_share : 0,
       d->no_picture ? 0 : d->width, d->no_picture ? 0 : d->height,

@@ -4,6 +4,7 @@
 #include "validation/trace/transport/random.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { SALT = 0x6c6967 };
 
@@ -205,4 +206,28 @@ size_t abbe_emission_batch(const abbe_emission *e, uint32_t from, uint32_t to,
 void abbe_emission_free(abbe_emission *e) {
   free(e->first);
   e->first = NULL;
+}
+
+abbe_result abbe_tracer_polarise(abbe_tracer *t, abbe_error *error) {
+  const abbe_scene *s = t->scene;
+  const bool sheets = abbe_scene_is_polarised(s),
+             on = t->desc.polarisation == ABBE_TRACE_POLARISATION_ON;
+  abbe_physics *physics = &t->desc.physics;
+  if (on && physics->matched)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "matched physics is the renderer's, which has no polarised light: take "
+                          "full physics");
+  physics->polarised =
+      on || (sheets && !physics->matched && t->desc.polarisation == ABBE_TRACE_POLARISATION_AUTO);
+  t->passes = 1;
+  if (!physics->polarised || !sheets) return ABBE_OK;
+  if (s->camera.polariser.kind != ABBE_POLARISER_NONE) t->passes = 0.5f;
+  t->dimmed = *s;
+  t->dimmed.light = malloc((s->light_count + 1) * sizeof *s->light);
+  if (t->dimmed.light == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for lights");
+  memcpy(t->dimmed.light, s->light, s->light_count * sizeof *s->light);
+  for (size_t i = 0; i < s->light_count; i++)
+    if (s->light[i].polariser.kind != ABBE_POLARISER_NONE) t->dimmed.light[i].power *= 0.5;
+  t->scene = &t->dimmed;
+  return ABBE_OK;
 }

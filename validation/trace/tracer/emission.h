@@ -24,4 +24,8 @@ void abbe_emission_free(abbe_emission *e);
 /* Photons [from, to), at most ABBE_LIGHT_WALK_BATCH of them; how many those are. */
 size_t abbe_emission_batch(const abbe_emission *e, uint32_t from, uint32_t to, abbe_photon *photon);
 
+/* Finds out whether paths are polarised; then lights and the picture are dimmed by polarisers, each
+ * of which passes half. ABBE_INVALID_ARGUMENT with matched physics. */
+abbe_result abbe_tracer_polarise(abbe_tracer *t, abbe_error *error);
+
 #endif

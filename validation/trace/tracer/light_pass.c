@@ -154,7 +154,7 @@ static void add_to_pixel(const sink *s, size_t pixel, uint32_t step, float value
   if (t->bands.count == 0) return;
   size_t band = t->bands.of_step[step];
   abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_BANDS + band,
-                       value * t->sampling.power[colour] / (float)t->bands.width_nm);
+                       t->passes * value * t->sampling.power[colour] / (float)t->bands.width_nm);
 }
 
 static void add_splat(const sink *s, const splat *p) {

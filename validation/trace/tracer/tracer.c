@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "spectral/wavelengths.h"
+#include "validation/trace/tracer/emission.h"
 #include "validation/trace/tracer/light_pass.h"
 #include "validation/trace/tracer/tracer_state.h"
 #include "validation/trace/transport/lamp_place.h"
@@ -287,6 +288,7 @@ abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *des
     result = abbe_error_set(error, ABBE_UNSUPPORTED,
                             "a camera with an 'aperture' sees through clear air and stones alone: "
                             "leave it out, or the 'medium'");
+  if (result == ABBE_OK) result = abbe_tracer_polarise(t, error);
   if (result == ABBE_OK) result = make_tables(t, error);
   if (result == ABBE_OK) result = abbe_tracer_check_wanted(t, error);
   if (result == ABBE_OK) result = abbe_tracer_share_photons(t, error);
@@ -335,6 +337,7 @@ void abbe_tracer_free(abbe_tracer *t) {
   free(t->photons);
   free(t->splits);
   free(t->walk);
+  free(t->dimmed.light);
   free(t);
 }
 
@@ -351,7 +354,7 @@ static void add_sample(abbe_tracer *t, size_t thread, size_t pixel, const abbe_e
       abbe_accumulator_add(&t->picture, thread, at + ABBE_TRACER_CAUSTIC + k, caustic[k]);
   }
   for (size_t i = 0; i < t->bands.count; i++)
-    abbe_accumulator_add(&t->picture, thread, at + ABBE_TRACER_BANDS + i, s->band[i]);
+    abbe_accumulator_add(&t->picture, thread, at + ABBE_TRACER_BANDS + i, t->passes * s->band[i]);
   if (t->desc.guides) abbe_guide_sums_set(&t->guides, pixel, rgb, s);
 }
 

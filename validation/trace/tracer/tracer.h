@@ -30,9 +30,17 @@
 #define ABBE_TRACER_MAX_PHOTONS 67108864u /* a pass */
 #define ABBE_TRACER_MAX_THREADS 256
 
+/* Whether paths carry the light's polarisation, by which the scene's polarisers count. */
+typedef enum abbe_trace_polarisation {
+  ABBE_TRACE_POLARISATION_AUTO, /* where there is a polariser, with full physics */
+  ABBE_TRACE_POLARISATION_ON,
+  ABBE_TRACE_POLARISATION_OFF /* polarisers are left out, and so is their dimming */
+} abbe_trace_polarisation;
+
 /* A request; zero means the default in every field. */
 typedef struct abbe_trace_desc {
-  abbe_physics physics;
+  abbe_physics physics; /* `polarised` is found by the next */
+  abbe_trace_polarisation polarisation;
   bool no_picture, no_map;       /* leave one of the two out */
   bool guides;                   /* layers of the picture that a filter needs, too */
   size_t width, height;          /* pixels; 0: the scene's */

@@ -73,7 +73,7 @@ static abbe_result attributes(const abbe_tracer *t, const char *kind, abbe_image
   snprintf(seed, sizeof seed, "%u", (unsigned)t->desc.seed);
   snprintf(photons, sizeof photons, "%zu", t->desc.photons);
   const char *pair[][2] = {{"abbe:kind", kind},
-                           {"abbe:physics", t->desc.physics.matched ? "matched" : "full"},
+                           {"abbe:physics", abbe_tracer_physics(t)},
                            {"abbe:passes", passes},
                            {"abbe:photons", photons},
                            {"abbe:seed", seed},

@@ -62,6 +62,8 @@ enum { ABBE_TRACER_RGB = 0, ABBE_TRACER_CAUSTIC = 3, ABBE_TRACER_BANDS = 6 };
 struct abbe_tracer {
   abbe_trace_desc desc; /* every field resolved */
   const abbe_scene *scene;
+  abbe_scene dimmed; /* the scene with its polarisers' lights dimmed, where that is another */
+  float passes;      /* what the camera's polariser passes of unpolarised light; 1: there is none */
   abbe_geometry geometry;
   abbe_spectral_sampling sampling;
   abbe_media media;
@@ -111,13 +113,18 @@ static inline abbe_result abbe_tracer_check_wanted(const abbe_tracer *t, abbe_er
   return abbe_tracer_is_wanted(t) ? ABBE_OK : abbe_error_set(error, ABBE_CANCELLED, "stopped");
 }
 
-/* From the space of mixing to the picture's. */
+/* What files say of it. */
+static inline const char *abbe_tracer_physics(const abbe_tracer *t) {
+  return t->desc.physics.matched ? "matched" : t->desc.physics.polarised ? "polarised" : "full";
+}
+
+/* From the space of mixing to the picture's, through the camera's polariser. */
 static inline void abbe_tracer_finish(const abbe_tracer *t, const float mixed[3], float out[3]) {
   for (int k = 0; k < 3; k++)
-    out[k] = t->mixing == t->desc.space
-                 ? mixed[k]
-                 : t->to_xyz[3 * k] * mixed[0] + t->to_xyz[3 * k + 1] * mixed[1] +
-                       t->to_xyz[3 * k + 2] * mixed[2];
+    out[k] = t->passes * (t->mixing == t->desc.space
+                              ? mixed[k]
+                              : t->to_xyz[3 * k] * mixed[0] + t->to_xyz[3 * k + 1] * mixed[1] +
+                                    t->to_xyz[3 * k + 2] * mixed[2]);
 }
 /* The unit of the ledger's sums, W. */
 static inline double abbe_tracer_ledger_unit(const abbe_tracer *t) {

@@ -36,8 +36,7 @@ static void to_unit(const float n[3], const float d[3], double normal[3], double
   }
 }
 
-/* Shares that add up to 1. */
-static void balance(size_t reflected, bool film, abbe_wave_ways *out) {
+void abbe_wave_ways_balance(size_t reflected, bool film, abbe_wave_ways *out) {
   float all = 0;
   for (size_t i = 0; i < out->count; i++) all += out->way[i].share;
   for (size_t i = 0; i < out->count; i++) {
@@ -61,13 +60,11 @@ void abbe_wave_ways_find(const abbe_uniaxial *from, const abbe_uniaxial *to, con
   add_side(from, split.reflected, true, out);
   const size_t reflected = out->count;
   add_side(to, split.transmitted, false, out);
-  balance(reflected, false, out);
+  abbe_wave_ways_balance(reflected, false, out);
 }
 
-/* From the faster and the slower one to the ordinary and the other one of a crystal of two indices,
- * whose first is there twice, and back: the ordinary one is the slower where its index is larger.
- */
-static int rename_wave(const abbe_biaxial *m, int wave) {
+/* Its first index is there twice: the ordinary one is the slower where its index is larger. */
+int abbe_wave_ways_rename(const abbe_biaxial *m, int wave) {
   return m->n[0] == m->n[1] && m->n[0] > m->n[2] ? 1 - wave : wave;
 }
 
@@ -80,9 +77,10 @@ static void add_waves(const abbe_biaxial *medium, const abbe_biaxial_wave wave[2
     const abbe_biaxial_wave *w = !two && !wave[0].travels ? &wave[1] : &wave[i];
     if (!(share > 0)) continue;
     abbe_wave_way *way = &out->way[out->count++];
-    *way = (abbe_wave_way){.share = (float)share,
-                           .wave = (uint8_t)(two ? rename_wave(medium, (int)wave[i].mode) : 0),
-                           .reflected = reflected};
+    *way = (abbe_wave_way){
+        .share = (float)share,
+        .wave = (uint8_t)(two ? abbe_wave_ways_rename(medium, (int)wave[i].mode) : 0),
+        .reflected = reflected};
     for (int k = 0; k < 3; k++) way->d[k] = (float)w->state.ray[k];
   }
 }
@@ -94,15 +92,15 @@ void abbe_wave_ways_find_biaxial(const abbe_biaxial *from, const abbe_biaxial *t
   abbe_biaxial_split split;
   to_unit(n, d, normal, ray);
   if (from->n[0] != from->n[1] || from->n[1] != from->n[2])
-    abbe_biaxial_meet(from, to, normal, (abbe_biaxial_mode)rename_wave(from, wave), ray, film,
-                      &split);
+    abbe_biaxial_meet(from, to, normal, (abbe_biaxial_mode)abbe_wave_ways_rename(from, wave), ray,
+                      film, &split);
   else
     abbe_biaxial_meet_unpolarised(from, to, normal, ray, film, &split);
   *out = (abbe_wave_ways){0};
   add_waves(from, split.reflected, true, out);
   const size_t reflected = out->count;
   add_waves(to, split.transmitted, false, out);
-  balance(reflected, film != NULL, out);
+  abbe_wave_ways_balance(reflected, film != NULL, out);
 }
 
 void abbe_media_crystal(const abbe_media *m, int i, uint32_t k, float f, abbe_uniaxial *out) {
@@ -114,8 +112,7 @@ void abbe_media_crystal(const abbe_media *m, int i, uint32_t k, float f, abbe_un
   for (int c = 0; c < 3; c++) out->axis[c] = m->axis[i][c];
 }
 
-/* Any medium with its axes. */
-static void place(const abbe_media *m, int i, uint32_t k, float f, abbe_biaxial *out) {
+void abbe_media_place(const abbe_media *m, int i, uint32_t k, float f, abbe_biaxial *out) {
   if (abbe_media_is_crystal(m, i) && m->principal != NULL) {
     abbe_media_axes(m, i, k, f, out);
     return;
@@ -136,8 +133,8 @@ static void biaxial_ways(const abbe_media *m, const abbe_wave_face *face, uint32
   abbe_biaxial media[2];
   abbe_film_layer layer[ABBE_FILM_MOST_LAYERS];
   abbe_biaxial_film film = {.layer = layer, .reversed = !face->entering};
-  place(m, face->from, step, within, &media[0]);
-  place(m, face->to, step, within, &media[1]);
+  abbe_media_place(m, face->from, step, within, &media[0]);
+  abbe_media_place(m, face->to, step, within, &media[1]);
   if (face->film >= 0) {
     film.count = m->films.layers[face->film];
     film.lambda_nm = abbe_films_at(&m->films, face->film, step, within, layer);
@@ -148,6 +145,10 @@ static void biaxial_ways(const abbe_media *m, const abbe_wave_face *face, uint32
 
 void abbe_media_ways(const abbe_media *m, const abbe_wave_face *face, uint32_t step, float within,
                      abbe_wave_ways *out) {
+  if (face->stokes != NULL) {
+    abbe_polarised_ways(m, face, step, within, out);
+    return;
+  }
   if (face->film >= 0 || abbe_media_is_biaxial(m, face->from) ||
       abbe_media_is_biaxial(m, face->to)) {
     biaxial_ways(m, face, step, within, out);

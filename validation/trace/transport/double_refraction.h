@@ -1,9 +1,11 @@
-/* double_refraction.h: light at the faces of crystals, for the walks.
+/* double_refraction.h: light at the faces of crystals, and polarised light at any, for the walks.
  *
  * Inside a crystal a path carries one of its two waves, with that wave's own linear polarisation;
  * at a face it goes on as up to two waves a side. Waves are added by power, not by amplitude: there
- * is no interference of the two. Light in isotropic media counts as unpolarised. Directions are
- * those of the rays; n is the unit normal on the side that the light comes from.
+ * is no interference of the two. Light in isotropic media counts as unpolarised, or has its Q, U, V
+ * over I (spectral/polarisation.h) in a frame that its ray's direction tells (polarised.c). A path
+ * of the camera has those of light that runs its way. Directions are those of the rays; n is the
+ * unit normal on the side that the light comes from.
  *
  * The physics is spectral/uniaxial.h's, where a face has a crystal of three indices at one side
  * spectral/biaxial.h's, in double precision.
@@ -15,6 +17,7 @@
 
 #include "spectral/uniaxial.h"
 #include "validation/trace/transport/media.h"
+#include "validation/trace/transport/mirrors.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -27,6 +30,7 @@ typedef struct abbe_wave_way {
   uint8_t wave; /* abbe_uniaxial_mode or abbe_biaxial_mode of the crystal that it goes on in; 0 in
                    isotropic media */
   bool reflected;
+  float stokes[3]; /* of polarised light: Q, U, V over I; 0 in crystals */
 } abbe_wave_way;
 
 /* Reflected ways first; the shares add up to 1. */
@@ -59,11 +63,40 @@ typedef struct abbe_wave_face {
   bool entering;
   float n[3], d[3];
   uint8_t wave;
+  const float *stokes; /* [3] of polarised light; NULL: it counts as unpolarised */
 } abbe_wave_face;
 
 /* The same between two media at a wavelength of the tables. */
 void abbe_media_ways(const abbe_media *media, const abbe_wave_face *face, uint32_t step,
                      float within, abbe_wave_ways *out);
+
+/* Any medium with its axes. */
+void abbe_media_place(const abbe_media *media, int medium, uint32_t step, float within,
+                      abbe_biaxial *out);
+
+/* From the faster and the slower wave to the ordinary and the other one of a crystal of two
+ * indices, and back; of others as it is. */
+int abbe_wave_ways_rename(const abbe_biaxial *medium, int wave);
+
+/* Shares that add up to 1, of which the first `reflected` ways are reflected, and their sum. */
+void abbe_wave_ways_balance(size_t reflected, bool film, abbe_wave_ways *out);
+
+/* abbe_media_ways of polarised light. */
+void abbe_polarised_ways(const abbe_media *media, const abbe_wave_face *face, uint32_t step,
+                         float within, abbe_wave_ways *out);
+
+/* Off a mirror from unit d to unit out: turns the light's stokes, and returns its share over that
+ * of unpolarised light. A mirror of one reflectance counts as an ideal conductor. */
+float abbe_polarised_mirror(const abbe_mirrors *mirrors, size_t mirror, const float d[3],
+                            const float out[3], uint32_t step, float within, float stokes[3]);
+
+/* Where a direction is bent a little. */
+void abbe_polarised_bend(const float from[3], const float to[3], float stokes[3]);
+
+/* What a light's polariser, or the camera's, passes along unit d or against it. */
+void abbe_polarised_lamp(const abbe_light *light, const float d[3], float stokes[3]);
+void abbe_polarised_camera(const abbe_polariser *sheet, const float right[3], const float up[3],
+                           const float d[3], float stokes[3]);
 
 /* One of the ways by two numbers: reflection below the reflected share, as far as there is any,
  * and then one of both waves. */

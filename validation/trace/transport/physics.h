@@ -19,6 +19,7 @@ typedef struct abbe_physics {
   double energy_share; /* matched: what is reflected below this share of its light ends */
   size_t eye_orders;   /* the same of the camera's paths; 0: as the light's */
   double eye_share;
+  bool polarised; /* not matched: paths carry the light's polarisation */
 } abbe_physics;
 
 #endif

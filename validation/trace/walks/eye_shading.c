@@ -2,6 +2,7 @@
 
 #include "base/maths.h"
 #include "validation/trace/medium/air_light.h"
+#include "validation/trace/transport/double_refraction.h"
 #include "validation/trace/transport/lamp_place.h"
 
 #include <string.h>
@@ -368,12 +369,31 @@ static void on_lamp(const abbe_geometry *g, const abbe_light *light, const float
   for (int k = 0; k < 3; k++) out[k] = p[k] + away / along * d[k];
 }
 
+/* How much more of a light's own radiance the path brings than of unpolarised light. */
+static float analysed(const abbe_eye_context *c, size_t light, const float d[3],
+                      const float stokes[3]) {
+  float own[3];
+  if (!c->w->physics.polarised) return 1;
+  abbe_polarised_lamp(&c->w->geometry->scene->light[light], d, own);
+  return 1 + abbe_eye_dot(own, stokes);
+}
+
+/* What the facet reflects towards d, and what the path is polarised to there. */
+static float glossed(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_hit *hit,
+                     const float d[3], float cos_h, float stokes[3]) {
+  const abbe_mirrors *m = c->w->mirrors;
+  const float share = abbe_mirrors_reflect(m, hit->surface->index, cos_h, p->step, p->within);
+  if (!c->w->physics.polarised) return share;
+  memcpy(stokes, p->stokes, sizeof p->stokes);
+  return share * abbe_polarised_mirror(m, hit->surface->index, p->d, d, p->step, p->within, stokes);
+}
+
 static void gloss_of_surroundings(const abbe_eye_context *c, const abbe_eye_path *p,
                                   const abbe_hit *hit, const float n[3],
                                   const abbe_rough_hit *rough) {
   const abbe_environment_light *e = c->w->environment;
   uint32_t bits[4];
-  float d[3], rgb[3], pdf, lobe_pdf, cos_h;
+  float d[3], rgb[3], pdf, lobe_pdf, cos_h, stokes[3];
   abbe_eye_random_bits(c, ~p->id ^ 0x676c6f73u, p->steps, bits);
   const double u[3] = {abbe_random_double(bits[0], bits[3]), (double)abbe_random_float(bits[1]),
                        (double)abbe_random_float(bits[2])};
@@ -382,10 +402,7 @@ static void gloss_of_surroundings(const abbe_eye_context *c, const abbe_eye_path
   const float seen = f > 0 ? sees_out(c, p, hit, n, d) : 0;
   if (!(seen > 0)) return;
   const float share = seen * f * abbe_eye_dot(n, d) / (pdf + lobe_pdf);
-  add_environment(
-      c, p, rgb,
-      share * abbe_mirrors_reflect(c->w->mirrors, hit->surface->index, cos_h, p->step, p->within),
-      NULL);
+  add_environment(c, p, rgb, share * glossed(c, p, hit, d, cos_h, stokes), NULL);
 }
 
 void abbe_eye_gloss(const abbe_eye_context *c, const abbe_eye_path *path, const abbe_hit *hit,
@@ -396,7 +413,7 @@ void abbe_eye_gloss(const abbe_eye_context *c, const abbe_eye_path *path, const 
   own.share *= spread(c, path, true);
   for (size_t l = 0; l < scene->light_count; l++) {
     const abbe_light *light = &scene->light[l];
-    float random[4], d[3], p[3], lobe_pdf, cos_h, weight = 1;
+    float random[4], d[3], p[3], lobe_pdf, cos_h, weight = 1, stokes[3];
     abbe_eye_random4(c, ~path->id ^ 0x6c616d70u,
                      (uint32_t)(path->steps * ABBE_SCENE_MAX_LIGHTS + l), random);
     const float e = irradiance(c, path, light, hit, n, random, d);
@@ -407,7 +424,8 @@ void abbe_eye_gloss(const abbe_eye_context *c, const abbe_eye_path *path, const 
       const float pdf = lamp_pdf(w->geometry, light, hit->p, d, p);
       weight = pdf / (pdf + lobe_pdf);
     }
-    weight *= abbe_mirrors_reflect(w->mirrors, hit->surface->index, cos_h, own.step, own.within);
+    weight *= glossed(c, &own, hit, d, cos_h, stokes);
+    if (w->physics.polarised) weight *= analysed(c, l, d, stokes);
     add_light(c, &own, l, e * f * weight, NULL);
   }
   if (w->environment->environment != NULL) gloss_of_surroundings(c, &own, hit, n, rough);
@@ -439,6 +457,8 @@ void abbe_eye_arrive(const abbe_eye_context *c, const abbe_eye_path *path, bool 
   } else if (abbe_eye_dot(p->d, hit->n) < 0) {
     size_t l = hit->surface->index;
     const float pdf = lamp_pdf(c->w->geometry, &scene->light[l], p->o, p->d, hit->p);
-    add_light(c, p, l, (float)scene->light[l].power * weight_of(p, pdf), NULL);
+    add_light(c, p, l,
+              (float)scene->light[l].power * weight_of(p, pdf) * analysed(c, l, p->d, p->stokes),
+              NULL);
   }
 }

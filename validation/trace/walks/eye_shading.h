@@ -22,9 +22,11 @@ typedef struct abbe_eye_path {
   abbe_media_set inside;
   float carried; /* matched: what a splitting path would carry */
   uint32_t walls, steps, id;
-  uint8_t wave; /* in a crystal: which of its two */
-  float lobe;   /* density with which the rough mirror that it comes from sent it on, 1/sr; 0: it
-                   comes from none */
+  uint8_t wave;    /* in a crystal: which of its two */
+  float lobe;      /* density with which the rough mirror that it comes from sent it on, 1/sr; 0: it
+                      comes from none */
+  float stokes[3]; /* of polarised light, outside of crystals: of what the camera would see, as if
+                      it shone */
 } abbe_eye_path;
 
 typedef struct abbe_eye_context {

@@ -49,7 +49,7 @@ typedef struct crossing {
   abbe_media_set before, after;
   abbe_wave_face face; /* the normal on the path's side */
   float cos_i;
-  bool crystal; /* on either side */
+  bool crystal; /* on either side, or the light is polarised */
 } crossing;
 
 static void cross(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_hit *hit,
@@ -64,7 +64,8 @@ static void cross(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_
   x->face.from = abbe_media_of(x->before);
   x->face.to = abbe_media_of(x->after);
   x->face.film = abbe_media_film(c->w->media, x->face.from, x->face.to, hit);
-  x->crystal = abbe_media_is_crystal(c->w->media, x->face.from) ||
+  x->face.stokes = c->w->physics.polarised ? p->stokes : NULL;
+  x->crystal = x->face.stokes != NULL || abbe_media_is_crystal(c->w->media, x->face.from) ||
                abbe_media_is_crystal(c->w->media, x->face.to);
   memcpy(x->face.d, p->d, sizeof x->face.d);
   x->face.wave = p->wave;
@@ -111,6 +112,9 @@ static void send_as(abbe_eye_path *p, const abbe_hit *hit, const crossing *x,
   abbe_interface_keep_side(hit->ng, x->face.entering == way->reflected ? 1 : -1, p->d);
   p->inside = way->reflected ? x->before : x->after;
   p->wave = way->wave;
+  memcpy(p->stokes, way->stokes, sizeof p->stokes);
+  if (x->face.stokes != NULL && memcmp(p->d, way->d, sizeof p->d) != 0)
+    abbe_polarised_bend(way->d, p->d, p->stokes);
   abbe_geometry_leave(hit, p->d, p->o);
 }
 
@@ -254,6 +258,9 @@ static void mirror_on(const abbe_eye_context *c, abbe_eye_path *p, const abbe_hi
     abbe_interface_reflect(p->d, n, cos_i, d);
   p->share *= abbe_mirrors_reflect(c->w->mirrors, hit->surface->index, cos_i, p->step, p->within);
   abbe_interface_keep_side(hit->ng, side, d);
+  if (c->w->physics.polarised)
+    p->share *= abbe_polarised_mirror(c->w->mirrors, hit->surface->index, p->d, d, p->step,
+                                      p->within, p->stokes);
   memcpy(p->d, d, sizeof d);
   abbe_geometry_leave(hit, d, p->o);
 }
@@ -349,15 +356,16 @@ static void follow_mirror(const abbe_eye_context *c, const abbe_eye_path *first,
   follow(c, &p);
 }
 
-/* Both waves into a crystal. */
+/* Both waves into a crystal; of polarised light what the outside mirrors too. */
 static void follow_waves(const abbe_eye_context *c, const abbe_eye_path *first, const abbe_hit *hit,
                          const crossing *x) {
   abbe_wave_ways ways;
   abbe_media_ways(c->w->media, &x->face, first->step, first->within, &ways);
   for (size_t i = 0; i < ways.count; i++) {
-    if (ways.way[i].reflected) continue;
+    const bool mirrored = ways.way[i].reflected;
+    if (mirrored && x->face.stokes == NULL) continue;
     abbe_eye_path p = *first;
-    p.id += HEROES * (uint32_t)ways.way[i].wave * 0x10000u;
+    p.id += HEROES * (mirrored ? 2 : (uint32_t)ways.way[i].wave) * 0x10000u;
     p.share *= ways.way[i].share * ways.passes;
     send_as(&p, hit, x, &ways.way[i]);
     follow(c, &p);
@@ -431,7 +439,7 @@ static void walk_on(const abbe_eye_context *c, abbe_eye_path *p, bool met, const
     follow(c, p);
     return;
   }
-  follow_mirror(c, p, &hit, &at, wave);
+  if (at.face.stokes == NULL) follow_mirror(c, p, &hit, &at, wave);
   follow_through(c, p, &hit, &at, wave);
 }
 
@@ -442,6 +450,9 @@ static void walk_sample(const abbe_eye_context *c, const abbe_trace_camera *came
   abbe_hit hit = {0};
   float length = 0;
   abbe_trace_camera_ray(camera, x, y, p->d);
+  if (c->w->physics.polarised)
+    abbe_polarised_camera(&c->w->geometry->scene->camera.polariser, camera->right, camera->up, p->d,
+                          p->stokes);
   bool met = trace(c, p, &hit, &length);
   if (met) add_first(c, p, &hit, length);
   const uint32_t count = is_coloured_haze(c, p) ? HEROES : 1;
@@ -455,17 +466,6 @@ static void walk_sample(const abbe_eye_context *c, const abbe_trace_camera *came
   }
 }
 
-static void clear(const abbe_eye_walk *w, abbe_eye_sample *out) {
-  memset(out->rgb, 0, sizeof out->rgb);
-  memset(out->caustic, 0, sizeof out->caustic);
-  memset(out->albedo, 0, sizeof out->albedo);
-  memset(out->normal, 0, sizeof out->normal);
-  out->depth = 0;
-  memset(out->band, 0, w->bands->count * sizeof *out->band);
-  out->refractor = false;
-  out->rays = 0;
-}
-
 void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
                          abbe_eye_sample *out) {
   abbe_eye_context c = {.w = w, .pixel = (uint32_t)pixel, .pass = pass, .out = out};
@@ -473,7 +473,7 @@ void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
   uint32_t shift[4], lens[4];
   float column = (float)(pixel % w->camera->width);
   float row = (float)(pixel / w->camera->width);
-  clear(w, out);
+  memset(out, 0, sizeof *out);
   abbe_eye_random_bits(&c, 0, 0, shift);
   for (uint32_t i = 0; i < count; i++) {
     abbe_eye_path p = {.share = 1 / (float)count,

@@ -30,6 +30,7 @@ typedef struct abbe_light_path {
   uint16_t steps, inner; /* interfaces met; matched: of them, after the first */
   bool begun;            /* has met its first interface */
   uint8_t wave;          /* in a crystal: which of its two */
+  float stokes[3];       /* of polarised light, outside of crystals */
 } abbe_light_path;
 
 /* Along the ray of lane k, which Embree has been through. */
@@ -155,11 +156,52 @@ static inline void abbe_light_path_roughen(const abbe_inner_rules *r, const abbe
   for (int i = 0; i < 3; i++) p->out[i][k] = out[i];
 }
 
+/* Behind a mirror: what polarised light is then, and its share over that of unpolarised light. */
+static inline float abbe_light_path_mirrored(const abbe_inner_rules *r, const abbe_mirrors *m,
+                                             const abbe_hit *hit, const abbe_scatter *p, size_t k,
+                                             abbe_light_path *s) {
+  float d[3], out[3];
+  if (!r->physics.polarised) return 1;
+  for (int i = 0; i < 3; i++) {
+    d[i] = p->d[i][k];
+    out[i] = p->out[i][k];
+  }
+  return abbe_polarised_mirror(m, hit->surface->index, d, out, s->step, s->within, s->stokes);
+}
+
+/* From a place on a solid's inside along unit d, and from where it has left it. */
+static inline abbe_inner_path abbe_light_path_in_solid(const abbe_media *m, int refractor,
+                                                       const abbe_light_path *s, const float p[3],
+                                                       const float d[3]) {
+  return (abbe_inner_path){.p = {p[0], p[1], p[2]},
+                           .d = {d[0], d[1], d[2]},
+                           .eta = abbe_media_n(m, refractor, s->step, s->within),
+                           .attenuation = abbe_media_attenuation(m, refractor, s->step, s->within),
+                           .flux = s->flux,
+                           .full = s->full,
+                           .y = s->y,
+                           .carried = s->carried,
+                           .id = s->id,
+                           .steps = s->steps,
+                           .inner = s->inner};
+}
+
+static inline void abbe_light_path_out_of_solid(const abbe_inner_path *from, abbe_light_path *s) {
+  if (s->steps == 1) s->chance[1] = from->second_chance;
+  s->flux = from->flux;
+  s->carried = from->carried;
+  s->inner = (uint16_t)from->inner;
+  s->steps = (uint16_t)from->steps;
+  s->inside = 0;
+}
+
 /* At a face of a crystal: puts into lane k, in place of what it has, where the path goes on as that
- * lane's number decides; *passes as of a film. Returns the wave that it goes on as. */
+ * lane's number decides; *passes as of a film, and what the light is then. Returns the wave that
+ * it goes on as. */
 static inline uint8_t abbe_light_path_bend(const abbe_inner_rules *r, const abbe_media *media,
                                            const abbe_light_path *s, abbe_wave_face *face,
-                                           abbe_scatter *p, size_t k, float *passes) {
+                                           abbe_scatter *p, size_t k, float *passes,
+                                           float stokes[3]) {
   float d[3], ng[3], random[4];
   for (int i = 0; i < 3; i++) {
     face->d[i] = p->d[i][k];
@@ -171,8 +213,13 @@ static inline uint8_t abbe_light_path_bend(const abbe_inner_rules *r, const abbe
   *passes = ways.passes;
   abbe_random4(s->id, s->steps, r->pass, r->seed ^ 0x77617665u, random);
   const abbe_wave_way *way = abbe_wave_ways_choose(&ways, p->chance[k], random[0]);
-  for (int i = 0; i < 3; i++) d[i] = way->d[i];
+  for (int i = 0; i < 3; i++) {
+    d[i] = way->d[i];
+    stokes[i] = way->stokes[i];
+  }
   abbe_interface_keep_side(ng, way->reflected ? 1 : -1, d);
+  if (r->physics.polarised && memcmp(d, way->d, sizeof d) != 0)
+    abbe_polarised_bend(way->d, d, stokes);
   for (int i = 0; i < 3; i++) {
     p->out[i][k] = d[i];
     /* off the face to the other side */

@@ -154,10 +154,11 @@ typedef struct packet {
   abbe_mirroring mirroring;
   abbe_media_set before[LANES], after[LANES];
   bool straight[LANES]; /* media of one index: no interface */
-  bool crystal[LANES];  /* on either side */
+  bool crystal[LANES];  /* on either side, or the light is polarised */
   int film[LANES];      /* on the face, or -1 */
   float passes[LANES];  /* what it does not absorb */
   uint8_t wave[LANES];  /* that a path goes on as, in a crystal */
+  float stokes[LANES][3];
   path_state state[LANES];
   abbe_hit hit[LANES];
 } packet;
@@ -187,8 +188,9 @@ static void meet_interface(const abbe_light_walk *w, const abbe_light_path *s, p
   int from = abbe_media_of(p->before[k]), to = abbe_media_of(p->after[k]);
   p->film[k] = abbe_media_film(w->media, from, to, hit);
   p->straight[k] = p->film[k] < 0 && abbe_media_same(w->media, from, to);
-  p->crystal[k] = !p->straight[k] &&
-                  (abbe_media_is_crystal(w->media, from) || abbe_media_is_crystal(w->media, to));
+  p->crystal[k] =
+      !p->straight[k] && (w->physics.polarised || abbe_media_is_crystal(w->media, from) ||
+                          abbe_media_is_crystal(w->media, to));
   p->scatter.eta[k] = p->straight[k] ? 1
                                      : abbe_media_n(w->media, from, s->step, s->within) /
                                            abbe_media_n(w->media, to, s->step, s->within);
@@ -260,8 +262,8 @@ static bool stays_in_solid(const abbe_light_walk *w, const abbe_light_path *s) {
   if (s->inside == 0) return false;
   if (s->steps < ABBE_PHOTON_SPLITS && w->splits >> s->steps != 0) return false; /* one is split */
   const int medium = abbe_media_of(s->inside);
-  return abbe_solid_is(&w->g->solid[medium]) && !abbe_media_is_crystal(w->media, medium) &&
-         !abbe_haze_scatters(&w->media->haze, medium);
+  return !w->physics.polarised && abbe_solid_is(&w->g->solid[medium]) &&
+         !abbe_media_is_crystal(w->media, medium) && !abbe_haze_scatters(&w->media->haze, medium);
 }
 
 /* Into the batch of its solid, whose paths leave it first where it is another's. */
@@ -270,21 +272,9 @@ static void enter_solid(run *r, size_t k, const float d[3], const abbe_light_pat
   const uint32_t refractor = (uint32_t)abbe_media_of(s->inside);
   if (b->count > 0 && b->refractor != refractor) leave_solid(r);
   b->refractor = refractor;
-  const abbe_media *m = r->w->media;
-  const float *p = r->packet.hit[k].p;
   b->path[b->count] = *s;
-  b->inner[b->count++] = (abbe_inner_path){
-      .p = {p[0], p[1], p[2]},
-      .d = {d[0], d[1], d[2]},
-      .eta = abbe_media_n(m, (int)refractor, s->step, s->within),
-      .attenuation = abbe_media_attenuation(m, (int)refractor, s->step, s->within),
-      .flux = s->flux,
-      .full = s->full,
-      .y = s->y,
-      .carried = s->carried,
-      .id = s->id,
-      .steps = s->steps,
-      .inner = s->inner};
+  b->inner[b->count++] =
+      abbe_light_path_in_solid(r->w->media, (int)refractor, s, r->packet.hit[k].p, d);
 }
 
 /* The path after the interface, into the next batch; what matched physics does not follow ends. */
@@ -300,7 +290,10 @@ static path_state go_on(run *r, size_t k, abbe_light_path *s) {
   if (!p->straight[k] && !abbe_light_path_is_followed(&r->rules, s, reflects, p->scatter.share[k]))
     return TRAPPED;
   s->inside = reflects ? p->before[k] : p->after[k];
-  if (p->crystal[k]) s->wave = p->wave[k];
+  if (p->crystal[k]) {
+    s->wave = p->wave[k];
+    memcpy(s->stokes, p->stokes[k], sizeof s->stokes);
+  }
   if (stays_in_solid(r->w, s)) {
     enter_solid(r, k, d, s);
     return SCATTERS;
@@ -317,14 +310,14 @@ static path_state leave_mirror(run *r, size_t k, const abbe_light_path *path) {
                           k);
   ray_batch *next = r->w->next;
   abbe_light_path *s = &next->path[next->count];
-  const float share = p->mirroring.share[k];
+  float share = p->mirroring.share[k], o[3], d[3];
   *s = *path;
+  share *= abbe_light_path_mirrored(&r->rules, r->w->mirrors, &p->hit[k], &p->scatter, k, s);
   r->ledger->absorbed += (double)(s->y * s->flux * (1 - share));
   s->flux *= share;
   s->carried *= share;
   if (++s->steps >= ABBE_INNER_MAX_STEPS) return LOST;
   if (!(s->flux > 0) || !abbe_light_path_survives(&r->rules, s, r->ledger)) return NOT_COUNTED;
-  float o[3], d[3];
   for (int i = 0; i < 3; i++) {
     o[i] = p->scatter.from[i][k];
     d[i] = p->scatter.out[i][k];
@@ -379,13 +372,19 @@ static void advance(run *r, const abbe_light_path *paths, size_t count, bool sec
 static void scatter_packet(run *r, const abbe_light_path *paths, size_t count) {
   packet *p = &r->packet;
   const abbe_media *m = r->w->media;
+  const bool polarised = r->rules.physics.polarised;
   abbe_scatter_packet(&p->scatter);
-  for (size_t k = 0; (m->crystal != NULL || m->films.count > 0) && k < count; k++) {
+  for (size_t k = 0; (m->crystal != NULL || m->films.count > 0 || polarised) && k < count; k++) {
     const int from = abbe_media_of(p->before[k]), to = abbe_media_of(p->after[k]);
-    abbe_wave_face face = {from, to, p->film[k], p->after[k] > p->before[k], .wave = paths[k].wave};
+    abbe_wave_face face = {.from = from,
+                           .to = to,
+                           .film = p->film[k],
+                           .entering = p->after[k] > p->before[k],
+                           .wave = paths[k].wave,
+                           .stokes = polarised ? paths[k].stokes : NULL};
     if (p->state[k] == SCATTERS && p->crystal[k])
-      p->wave[k] =
-          abbe_light_path_bend(&r->rules, m, &paths[k], &face, &p->scatter, k, &p->passes[k]);
+      p->wave[k] = abbe_light_path_bend(&r->rules, m, &paths[k], &face, &p->scatter, k,
+                                        &p->passes[k], p->stokes[k]);
     else if (p->state[k] == SCATTERS && p->film[k] >= 0)
       p->passes[k] = abbe_light_path_coat(m, &paths[k], &face, &p->scatter, k);
   }
@@ -427,12 +426,7 @@ static void leave_solid(run *r) {
                                         [ABBE_INNER_LOST] = LOST};
     const abbe_inner_path *from = &b->inner[i];
     abbe_light_path *s = &b->path[i];
-    if (s->steps == 1) s->chance[1] = from->second_chance;
-    s->flux = from->flux;
-    s->carried = from->carried;
-    s->inner = (uint16_t)from->inner;
-    s->steps = (uint16_t)from->steps;
-    s->inside = 0;
+    abbe_light_path_out_of_solid(from, s);
     if (from->end == ABBE_INNER_LEFT) {
       abbe_ray_put(w->next->ray, w->next->count, from->p, from->d);
       w->next->path[w->next->count++] = *s;
@@ -445,13 +439,16 @@ static void leave_solid(run *r) {
 
 /* ---- the batch ---- */
 
-static void begin(ray_batch *b, const abbe_photon *photon, size_t count) {
+static void begin(const run *r, ray_batch *b, const abbe_photon *photon, size_t count) {
+  const bool sheet = r->rules.physics.polarised && r->light != NULL;
   b->count = 0;
   for (size_t i = 0; i < count; i++) {
     const abbe_photon *p = &photon[i];
     if (!(p->flux > 0)) continue;
     abbe_ray_put(b->ray, b->count, p->o, p->d);
-    abbe_light_path_start(p, &b->path[b->count++]);
+    abbe_light_path_start(p, &b->path[b->count]);
+    if (sheet) abbe_polarised_lamp(r->light, p->d, b->path[b->count].stokes);
+    b->count++;
   }
 }
 
@@ -488,7 +485,7 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
            .hit = hit,
            .ledger = ledger};
   abbe_random_bits(0x73686966, 0, pass, w->seed, r.rules.shift);
-  begin(w->batch, photon, count);
+  begin(&r, w->batch, photon, count);
   for (size_t bounce = 0; w->batch->count > 0; bounce++) {
     follow(&r, bounce);
     ray_batch *done = w->batch;

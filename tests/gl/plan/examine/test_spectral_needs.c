@@ -67,6 +67,42 @@ TEST(double_refraction_is_noted) {
   assert_false(is_noted(&plan, "double refraction"));
 }
 
+/* Known answers of panes of index 1.5 and of diamond; and polarisers. */
+TEST(polarisation_that_matters_is_noted) {
+  const char *pane = "- {name: pane, shape: box, size: [0.2, 0.2, 0.01], material: %s, "
+                     "transform: [{translate: [0, 0, 0.1]}]}\n";
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("flat"));
+  FILLED(abbe_plan, plan, plan_scene(&scene, NULL, &plan));
+  assert_false(is_noted(&plan, "polarisation"));
+  abbe_plan_free(&plan);
+  char objects[200];
+  snprintf(objects, sizeof objects, pane, "calcite");
+  plan_text(printed("camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05], polariser: {kind: left}}\n"
+                    "lights: [{name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1, "
+                    "polariser: {angle: 30}}]\n" FLOOR "%s",
+                    objects),
+            NULL, &plan);
+  assert_true(is_noted(&plan, "camera: polarisation matters: its polariser is left out"));
+  assert_true(is_noted(&plan, "sun: polarisation matters: its polariser is left out"));
+  assert_true(is_noted(&plan, "pane: 'abbe trace' adds its two waves by power"));
+  abbe_plan_free(&plan);
+  static const char *const rows[][2] = {{"1.5", "0.1638 of light at 60 degrees, and 0.1519 by"},
+                                        {"2.417", "0.3488 of light at 60 degrees, and 0.3050 by"}};
+  for (size_t i = 0; i < 2; i++) {
+    const char *text =
+        printed("materials:\n- {name: a, source: made up, model: constant, coefficients: [%s]}\n",
+                rows[i][0]);
+    MADE(abbe_material_table, table,
+         abbe_material_table_parse(text, strlen(text), "table", &table, &error));
+    snprintf(objects, sizeof objects, pane, "flat");
+    OWNED(abbe_scene, glazed) = scene_of(printed(CAMERA POINT_LIGHT FLOOR "%s", objects));
+    glazed.object[1].material = &table.material[0];
+    plan_scene(&glazed, NULL, &plan);
+    assert_true(is_noted(&plan, rows[i][1]));
+    abbe_plan_free(&plan);
+  }
+}
+
 /* Known answers for calcite, quartz, zircon and rutile; the middle one of three indices is of no
  * matter. */
 TEST(double_images_are_noted) {

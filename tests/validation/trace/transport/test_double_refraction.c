@@ -127,3 +127,173 @@ TEST(media_know_their_axes) {
   abbe_media_crystal(&m, 0, 0, 0, &u);
   assert_true(u.n_e == u.n_o);
 }
+
+/* ---- polarised light ---- */
+
+#define KINDS                                                                                      \
+  "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" SUN FLOOR                                  \
+  "- {name: a, shape: sphere, radius: 0.02, material: n-sf11}\n"                                   \
+  "- {name: b, shape: sphere, radius: 0.02, material: calcite, axis: [1, 0.4, 0.7]}\n"             \
+  "- {name: c, shape: sphere, radius: 0.02, material: topaz, axes: {x: [1, 2, 0], z: [0, 0, "      \
+  "1]}}\n"                                                                                         \
+  "- {name: d, shape: sphere, radius: 0.02, material: n-bk7, coating: {layers: [[2.4, 90], "       \
+  "[[0.42, 2.4], 8]]}}\n"                                                                          \
+  "- {name: gold, shape: sphere, radius: 0.02, mirror: gold}\n"                                    \
+  "- {name: grey, shape: sphere, radius: 0.02, mirror: 0.7}\n"
+
+typedef struct kinds {
+  abbe_scene scene;
+  abbe_geometry g;
+  abbe_media media;
+  abbe_mirrors mirrors;
+} kinds;
+
+static void make_kinds(kinds *k) {
+  const double lambda_nm[2] = {550, 551};
+  *k = (kinds){0};
+  OK(abbe_scene_parse(KINDS, strlen(KINDS), "scene", NULL, &k->scene, &error));
+  OK(abbe_geometry_make(&k->scene, &k->g, &error));
+  OK(abbe_media_make(&k->g, lambda_nm, 1, &k->media, &error));
+  OK(abbe_mirrors_make(&k->g, lambda_nm, 1, &k->mirrors, &error));
+}
+
+static void free_kinds(kinds *k) {
+  abbe_mirrors_free(&k->mirrors);
+  abbe_media_free(&k->media);
+  abbe_geometry_free(&k->g);
+  abbe_scene_free(&k->scene);
+}
+
+static void state(uint64_t *random, float out[3]) {
+  double v[3];
+  direction(random, v);
+  for (int k = 0; k < 3; k++) out[k] = (float)v[k];
+}
+
+/* Light of wholly polarised states that run one against the other: y is turned over. */
+static float meets(const float a[3], const float b[3]) {
+  return 0.5f * (1 + a[0] * b[0] - a[1] * b[1] + a[2] * b[2]);
+}
+
+/* A face between two of the media, and light of a random state that comes to it. */
+static abbe_wave_face random_face(uint64_t *random, const abbe_media *m, float stokes[3]) {
+  abbe_wave_face face = {.film = -1, .stokes = stokes};
+  float n[3], along;
+  do {
+    face.from = (int)random_between(random, -1, 3.999);
+    face.to = (int)random_between(random, -1, 3.999);
+  } while (face.from == face.to);
+  if (face.from == 3 || face.to == 3) face.film = 0;
+  face.entering = face.to == 3;
+  state(random, n);
+  do {
+    state(random, face.d);
+    along = n[0] * face.d[0] + n[1] * face.d[1] + n[2] * face.d[2];
+  } while (!(along < -0.01f));
+  memcpy(face.n, n, sizeof n);
+  state(random, stokes);
+  if (abbe_media_is_crystal(m, face.from)) face.wave = random_between(random, 0, 2) < 1;
+  return face;
+}
+
+/* The share of one state that a face turns into another is that of the way back: for glass,
+ * crystals, films, total reflection. */
+TEST(polarised_light_runs_back_as_it_came) {
+  uint64_t random = 7;
+  kinds k;
+  make_kinds(&k);
+  size_t compared = 0;
+  for (int i = 0; i < 20000; i++) {
+    float there[3], ends[3];
+    const abbe_wave_face face = random_face(&random, &k.media, there);
+    abbe_wave_ways ways, back;
+    abbe_media_ways(&k.media, &face, 0, 0, &ways);
+    float sum = 0;
+    for (size_t w = 0; w < ways.count; w++) sum += ways.way[w].share;
+    assert_near(sum, 1, 1e-6);
+    const abbe_wave_way *way = &ways.way[(size_t)random_between(&random, 0, 3.99) % ways.count];
+    const bool in_crystal = abbe_media_is_crystal(&k.media, way->reflected ? face.from : face.to);
+    state(&random, ends);
+    abbe_wave_face turned = face;
+    turned.stokes = ends;
+    turned.wave = way->wave;
+    float along = 0;
+    for (int c = 0; c < 3; c++) {
+      turned.d[c] = -way->d[c];
+      turned.n[c] = way->reflected ? face.n[c] : -face.n[c];
+      along += turned.d[c] * turned.n[c];
+    }
+    if (!way->reflected) turned.from = face.to, turned.to = face.from;
+    if (!way->reflected) turned.entering = !face.entering;
+    if (!(along < -0.01f)) continue;
+    abbe_media_ways(&k.media, &turned, 0, 0, &back);
+    float share = 0;
+    for (size_t w = 0; w < back.count; w++) {
+      const abbe_wave_way *b = &back.way[w];
+      if (b->reflected != way->reflected || b->wave != face.wave) continue;
+      share = b->share * back.passes *
+              (abbe_media_is_crystal(&k.media, face.from) ? 1 : meets(b->stokes, there));
+    }
+    assert_near(ways.passes * way->share * (in_crystal ? 1 : meets(way->stokes, ends)), share,
+                3e-5);
+    compared++;
+  }
+  assert_true(compared > 15000);
+  free_kinds(&k);
+}
+
+/* The mean over two opposite states is what unpolarised light does. */
+TEST(unpolarised_light_is_the_mean_of_opposite_states) {
+  uint64_t random = 11;
+  kinds k;
+  make_kinds(&k);
+  for (int i = 0; i < 5000; i++) {
+    float stokes[3], none[3] = {0};
+    abbe_wave_face face = random_face(&random, &k.media, stokes);
+    if (abbe_media_is_crystal(&k.media, face.from)) continue;
+    abbe_wave_ways ways[2], bare, plain;
+    for (int sign = 0; sign < 2; sign++) {
+      abbe_media_ways(&k.media, &face, 0, 0, &ways[sign]);
+      for (int c = 0; c < 3; c++) stokes[c] = -stokes[c];
+    }
+    face.stokes = none;
+    abbe_media_ways(&k.media, &face, 0, 0, &bare);
+    face.stokes = NULL;
+    if (face.film < 0 || abbe_media_is_crystal(&k.media, face.to)) {
+      abbe_media_ways(&k.media, &face, 0, 0, &plain);
+      assert_near(bare.passes * bare.reflected, plain.passes * plain.reflected, 2e-5);
+    }
+    assert_near((ways[0].passes * ways[0].reflected + ways[1].passes * ways[1].reflected) / 2,
+                bare.passes * bare.reflected, 2e-6);
+  }
+  free_kinds(&k);
+}
+
+TEST(mirrors_turn_light_and_give_it_back) {
+  uint64_t random = 3;
+  kinds k;
+  make_kinds(&k);
+  for (int i = 0; i < 2000; i++) {
+    const size_t mirror = (size_t)i % 2;
+    float d[3], out[3], from[3], to[3], there[3], back[3], opposite[2][3];
+    state(&random, d);
+    state(&random, out);
+    state(&random, from);
+    state(&random, to);
+    for (int c = 0; c < 3; c++) {
+      there[c] = from[c];
+      back[c] = to[c];
+      opposite[0][c] = -out[c];
+      opposite[1][c] = -d[c];
+    }
+    const float a = abbe_polarised_mirror(&k.mirrors, mirror, d, out, 0, 0, there);
+    const float b = abbe_polarised_mirror(&k.mirrors, mirror, opposite[0], opposite[1], 0, 0, back);
+    assert_near(a * meets(there, to), b * meets(back, from), 1e-5);
+    if (mirror == 1) assert_near(a, 1, 1e-6);
+  }
+  float right[3] = {0, 0, 1};
+  const float down[3] = {0, 0.6f, -0.8f}, up[3] = {0, -0.6f, 0.8f};
+  abbe_polarised_mirror(&k.mirrors, 0, down, up, 0, 0, right);
+  assert_near(right[2], -1, 1e-6);
+  free_kinds(&k);
+}
