@@ -26,6 +26,7 @@ abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc
                              .volume_path = desc->volume_path,
                              .volume = desc->volume,
                              .seen_s = -1};
+  abbe_view_keep_find_place(app);
   abbe_result result = abbe_view_state_begin(&app->state, desc->document, error);
   app->state.refine.last = desc->last;
   app->state.refine.single = desc->volume != NULL;
@@ -389,6 +390,10 @@ void abbe_view_app_key(abbe_view_session *app, int key, bool down, int modifiers
   if (down && key == 't' && modifiers == 0) {
     if (abbe_view_turn_begin(app, &error) != ABBE_OK)
       snprintf(app->note, sizeof app->note, "%s", error.text);
+    return;
+  }
+  if (down && (key == 'h' || key == '?') && modifiers != ABBE_VIEW_CONTROL) {
+    app->keys = !app->keys;
     return;
   }
   abbe_view_state_key(&app->state, key, down, modifiers, now_s);

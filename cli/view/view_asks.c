@@ -144,6 +144,30 @@ static void draw_feed(const abbe_view_session *app) {
   }
 }
 
+/* What hands and keys do, over the picture. */
+static void draw_keys(void) {
+  static const char *const lines[][2] = {
+      {"left drag", "turns the view; with shift, sideways"},
+      {"wheel", "nearer and farther"},
+      {"right drag", "looks around; w a s d q e fly"},
+      {"drag a ring", "moves it; shift: up and down; control: tilts"},
+      {"g", "drops what was dragged last on the table"},
+      {"click", "a pixel's spectrum"},
+      {"b, v", "checked by tracing; the difference"},
+      {"+ -", "brighter, darker"},
+      {"control z, y", "undo, redo"},
+      {"control s", "keeps picture and scene"},
+      {"t", "turntable"},
+      {"h, ?, F1", "these keys"},
+  };
+  const size_t count = sizeof lines / sizeof *lines;
+  abbe_ui_box(12, 12, 440, 32 + 20 * (double)count, 0x1816181c);
+  for (size_t i = 0; i < count; i++) {
+    abbe_ui_label(24, 22 + 20 * (double)i, 0xffd98a, lines[i][0]);
+    abbe_ui_label(130, 22 + 20 * (double)i, 0xe8eaee, lines[i][1]);
+  }
+}
+
 void abbe_view_marks_draw(const abbe_view_session *app) {
   const abbe_view_state *s = &app->state;
   abbe_view_handle handle;
@@ -159,11 +183,13 @@ void abbe_view_marks_draw(const abbe_view_session *app) {
                     light ? s->outline.light[handle.index].name
                           : s->outline.object[handle.index].name);
   }
-  if (!s->picked) return;
-  draw_feed(app);
-  const double x = (double)s->pixel[0] + 0.5, y = (double)s->pixel[1] + 0.5;
-  abbe_ui_circle(x, y, 5, 0x00ffffff, 1.5);
-  abbe_ui_circle(x, y, 6.5, 0x40000000, 1);
+  if (s->picked) {
+    draw_feed(app);
+    const double x = (double)s->pixel[0] + 0.5, y = (double)s->pixel[1] + 0.5;
+    abbe_ui_circle(x, y, 5, 0x00ffffff, 1.5);
+    abbe_ui_circle(x, y, 6.5, 0x40000000, 1);
+  }
+  if (app->keys) draw_keys();
 }
 
 enum { LONGEST = 1100 };

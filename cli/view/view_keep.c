@@ -1,7 +1,10 @@
+#define _XOPEN_SOURCE 700 /* realpath */
 #include "cli/view/view_keep.h"
 
 #include "base/file.h"
 #include "base/number.h"
+#include "base/yaml/yaml_edit.h"
+#include "base/yaml/yaml_edit_text.h"
 #include "cli/view/picture/view_show.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/png_file.h"
@@ -13,6 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 /* Text that grows; without memory it stays NULL. */
 typedef struct growing {
@@ -57,8 +61,19 @@ void abbe_view_keep_name(const abbe_view_session *session, const char *ending, c
   if (session->keep != NULL)
     snprintf(out, size, "%.*s%s", ABBE_VIEW_KEEP_LONGEST, session->keep, ending);
   else
-    snprintf(out, size, "%.*s-view%s", dot != NULL ? (int)(dot - name) : (int)strlen(name), name,
-             ending);
+    snprintf(out, size, "%s%.*s-view%s", session->elsewhere,
+             dot != NULL ? (int)(dot - name) : (int)strlen(name), name, ending);
+}
+
+void abbe_view_keep_find_place(abbe_view_session *session) {
+  const char *places[] = {getenv("HOME"), getenv("TMPDIR"), "/tmp"};
+  char here[PATH_MAX];
+  if (session->keep != NULL || (getcwd(here, sizeof here) != NULL && access(".", W_OK) == 0))
+    return;
+  for (size_t i = 0; i < sizeof places / sizeof *places && session->elsewhere[0] == '\0'; i++)
+    if (places[i] != NULL && places[i][0] == '/' && access(places[i], W_OK) == 0 &&
+        strlen(places[i]) + 2 < sizeof session->elsewhere)
+      snprintf(session->elsewhere, sizeof session->elsewhere, "%s/", places[i]);
 }
 
 static bool has_exposure(const abbe_view_session *session) {
@@ -91,6 +106,37 @@ static void write_outputs(const abbe_view_session *session, FILE *out) {
   fputs(stops, out);
 }
 
+/* How a stone's file is shown. */
+static void write_studio(const abbe_studio *studio, FILE *out) {
+#define LOOK_NAME(name) #name,
+#define NAME(code, name) #name,
+  static const char *const looks[] = {ABBE_STUDIO_LOOKS(LOOK_NAME)};
+  static const char *const withs[] = {ABBE_STUDIO_WITHS(NAME)};
+#undef LOOK_NAME
+#undef NAME
+  const struct {
+    const char *option, *text;
+  } texts[] = {
+      {" --material ", studio->material},
+      {" --look ", studio->look > 0 ? looks[studio->look] : NULL},
+      {" --with ", studio->with > 0 ? withs[studio->with] : NULL},
+      {" --setting ", studio->setting > 0 ? abbe_studio_setting_name(studio->setting) : NULL},
+      {" --metal ", studio->metal}};
+  char width[ABBE_NUMBER_TEXT_SIZE + 16];
+  for (size_t i = 0; i < studio->more_count; i++) {
+    fputc(' ', out);
+    quote(out, studio->more[i]);
+  }
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    if (texts[i].text == NULL) continue;
+    fputs(texts[i].option, out);
+    quote(out, texts[i].text);
+  }
+  if (!(studio->width_m > 0)) return;
+  abbe_number_format(width, sizeof width, " --width %.9gmm", 1e3 * studio->width_m);
+  fputs(width, out);
+}
+
 char *abbe_view_keep_command(const abbe_view_session *session) {
   const abbe_view_document *now = abbe_view_history_now(&session->state.history);
   const abbe_render_desc *d = &session->last.asked;
@@ -110,6 +156,7 @@ char *abbe_view_keep_command(const abbe_view_session *session) {
     return NULL;
   fputs("abbe render ", out.stream);
   quote(out.stream, now->path);
+  if (abbe_studio_is_stone(now->path) && now->studio != NULL) write_studio(now->studio, out.stream);
   if (session->materials != NULL) {
     fputs(" --materials ", out.stream);
     quote(out.stream, session->materials);
@@ -148,12 +195,65 @@ static const char *folder_of(const char *path, char *out) {
   return out;
 }
 
-/* Whether the scene names files that it would not find from the other's folder. */
-static bool names_files(const abbe_view_session *session, const char *target) {
-  const char *path = abbe_view_history_now(&session->state.history)->path;
-  char here[PATH_MAX], there[PATH_MAX];
-  return session->files.count > 1 &&
-         !abbe_view_keep_same_file(folder_of(path, here), folder_of(target, there));
+/* The file of the scene that a text names from its folder, or NULL. */
+static const char *file_named(const abbe_view_session *session, const char *folder,
+                              const char *text) {
+  char path[PATH_MAX];
+  if (text == NULL || text[0] == '/') return NULL;
+  snprintf(path, sizeof path, "%s%s", strcmp(folder, ".") == 0 ? "" : folder, text);
+  for (size_t i = 1; i < session->files.count; i++)
+    if (strcmp(session->files.path[i], path) == 0) return session->files.path[i];
+  return NULL;
+}
+
+/* The first value below a node that names a file from the folder. */
+static const char *find_named(const abbe_view_session *session, const abbe_yaml_edit *edit,
+                              const char *folder, abbe_yaml_node node, abbe_yaml_node *parent,
+                              size_t *index) {
+  const bool mapping = abbe_yaml_is_mapping(edit->yaml, node);
+  const char *found = NULL;
+  for (size_t i = 0; found == NULL && i < abbe_yaml_count(edit->yaml, node); i++) {
+    const abbe_yaml_node value =
+        mapping ? abbe_yaml_value(edit->yaml, node, i) : abbe_yaml_item(edit->yaml, node, i);
+    if (mapping &&
+        strcmp(abbe_yaml_text(edit->yaml, abbe_yaml_key(edit->yaml, node, i)), "name") == 0)
+      continue;
+    *parent = node;
+    *index = i;
+    found = abbe_yaml_is_scalar(edit->yaml, value)
+                ? file_named(session, folder, abbe_yaml_text(edit->yaml, value))
+                : find_named(session, edit, folder, value, parent, index);
+  }
+  return found;
+}
+
+/* In another folder than its own a scene names its files by their whole paths. */
+static abbe_result name_files(const abbe_view_session *session, char **text, size_t *size,
+                              abbe_error *error) {
+  const char *path = abbe_view_history_now(&session->state.history)->path, *file;
+  char here[PATH_MAX], whole[PATH_MAX];
+  const char *folder = folder_of(path, here);
+  abbe_yaml_edit edit;
+  abbe_yaml_node parent;
+  size_t index;
+  abbe_result result = abbe_yaml_edit_make(*text, *size, path, &edit, error);
+  while (result == ABBE_OK &&
+         (file = find_named(session, &edit, folder, abbe_yaml_root(edit.yaml), &parent, &index))) {
+    char *quoted = NULL;
+    if (realpath(file, whole) == NULL)
+      result = abbe_error_set(error, ABBE_IO, "%.300s is not there any more", file);
+    if (result == ABBE_OK) result = abbe_yaml_quote_make(whole, &quoted, error);
+    if (result == ABBE_OK) result = abbe_yaml_edit_replace(&edit, parent, index, quoted, error);
+    free(quoted);
+  }
+  if (result == ABBE_OK) {
+    free(*text);
+    *text = edit.text;
+    *size = edit.size;
+    edit.text = NULL;
+  }
+  abbe_yaml_edit_free(&edit);
+  return result;
 }
 
 static abbe_result keep_scene(const abbe_view_session *session, const char *target,
@@ -165,11 +265,18 @@ static abbe_result keep_scene(const abbe_view_session *session, const char *targ
   memcpy(set, now->set, now->set_count * sizeof *set);
   abbe_number_format(stops, sizeof stops, "camera.exposure=%.9g", session->state.exposure);
   set[now->set_count] = stops;
+  char here[PATH_MAX], there[PATH_MAX];
+  const char *folder = folder_of(target, there);
+  abbe_studio studio = now->studio != NULL ? *now->studio : (abbe_studio){0};
+  studio.folder = strcmp(folder, ".") == 0 ? "" : folder;
   const abbe_scene_options options = {
-      .set = set, .set_count = now->set_count + exposed, .studio = now->studio};
+      .set = set, .set_count = now->set_count + exposed, .studio = &studio};
   char *text = NULL;
   size_t size = 0;
   abbe_result result = abbe_scene_text(now->path, &options, &text, &size, error);
+  if (result == ABBE_OK && !abbe_studio_is_stone(now->path) &&
+      !abbe_view_keep_same_file(folder_of(now->path, here), folder))
+    result = name_files(session, &text, &size, error);
   if (result == ABBE_OK) result = abbe_file_write(target, text, size, error);
   free(text);
   return result;
@@ -245,7 +352,6 @@ abbe_result abbe_view_keep(abbe_view_session *session, abbe_error *error) {
   abbe_view_keep_name(session, ".exr", exr, sizeof exr);
   abbe_view_keep_name(session, ".png", png, sizeof png);
   abbe_view_keep_name(session, ".yaml", yaml, sizeof yaml);
-  const bool scene = !names_files(session, yaml);
   abbe_result result = abbe_view_keep_rests(session, error);
   if (result == ABBE_OK) result = abbe_view_keep_check(session, exr, error);
   if (result == ABBE_OK) result = abbe_view_keep_check(session, png, error);
@@ -254,16 +360,12 @@ abbe_result abbe_view_keep(abbe_view_session *session, abbe_error *error) {
   if (result == ABBE_OK)
     result =
         rendered ? abbe_view_keep_png(session, image, png, error) : keep_shown(session, png, error);
-  if (result == ABBE_OK && scene) result = keep_scene(session, yaml, error);
+  if (result == ABBE_OK) result = keep_scene(session, yaml, error);
   if (result != ABBE_OK) return result;
   print_command(session);
-  if (scene)
-    snprintf(session->note, sizeof session->note, "kept %.300s, %.300s, %.300s", exr, png, yaml);
-  else
-    snprintf(
-        session->note, sizeof session->note,
-        "kept %.300s and %.300s; the scene names files beside it, so it can be kept in its own "
-        "folder only: start with --keep there",
-        exr, png);
+  snprintf(session->note, sizeof session->note, "kept %.300s, %.300s, %.300s%s", exr, png, yaml,
+           session->elsewhere[0] != '\0'
+               ? "; nothing can be written in the folder that abbe was started in"
+               : "");
   return ABBE_OK;
 }

@@ -7,6 +7,9 @@
 
 #define ABBE_VIEW_KEEP_LONGEST 1000 /* bytes of a name, without an ending */
 
+/* Where the folder that the program was started in cannot be written to, unnamed files go to the
+ * user's own, or to that of temporary files. */
+void abbe_view_keep_find_place(abbe_view_session *session);
 /* What kept files are called, with that ending: as given, or the scene's name and -view. */
 void abbe_view_keep_name(const abbe_view_session *session, const char *ending, char *out,
                          size_t size);
@@ -14,8 +17,8 @@ void abbe_view_keep_name(const abbe_view_session *session, const char *ending, c
  */
 abbe_result abbe_view_keep_rests(const abbe_view_session *session, abbe_error *error);
 /* Writes the rendered picture as NAME.exr, what is looked at as NAME.png, and NAME.yaml, says so in
- * the session's note, and the command on standard output. The scene is written beside the files
- * that it names or not at all. Errors of abbe_view_keep_rests;
+ * the session's note, and the command on standard output. In another folder than its own the scene
+ * names its files by their whole paths. Errors of abbe_view_keep_rests;
  * ABBE_INVALID_ARGUMENT where one of the three is a file that the scene is read from; errors of
  * files. */
 abbe_result abbe_view_keep(abbe_view_session *session, abbe_error *error);

@@ -56,69 +56,74 @@ static abbe_view_stage coming(const abbe_view_refine *r) {
              : ABBE_VIEW_NONE;
 }
 
-/* What the picture was made with, what of it is less while something moves, and what is made
- * meanwhile: a line each, also where it is empty, for widgets below stay where they are. */
+/* What the picture was made with, in the plan's words, and what of it is less while something
+ * moves. */
 static void draw_made(const abbe_view_session *app) {
   const bool moving = app->stage == ABBE_VIEW_MOVING;
   const abbe_render_desc *d = moving ? &app->moving : &app->last.desc;
-  const abbe_view_stage next = coming(&app->state.refine);
-  char text[160] = " ", eye[64] = "";
   const size_t followed = abbe_render_desc_eye_wavelengths(d);
-  if (moving && d->wavelengths > followed) snprintf(eye, sizeof eye, "%zu wavelengths; ", followed);
-  if (moving && d->upsample > 1)
-    snprintf(eye + strlen(eye), sizeof eye - strlen(eye), "%zu x %zu pixels; ", d->upsample,
-             d->upsample);
-  if (moving && app->moved.light != ABBE_VIEW_MOVING)
-    snprintf(text, sizeof text, "%s%s light", eye, abbe_view_stage_name(app->moved.light));
-  else if (d->photons > 0)
-    snprintf(text, sizeof text, "%s%zu photons a side", eye, d->photons);
-  abbe_ui_text(DIM, text);
-  snprintf(text, sizeof text, " ");
-  if (next != ABBE_VIEW_NONE && next != app->stage)
-    snprintf(text, sizeof text, "%s is made", abbe_view_stage_name(next));
-  abbe_ui_text(DIM, text);
+  pair("stage", "%s", abbe_view_stage_name(app->stage));
+  if (d->photons > 0) pair("photons a side", "%zu", d->photons);
+  if (d->wavelengths > 0) pair("wavelengths", "%zu", followed);
+  if (moving && d->upsample > 1) pair("pixels together", "%zu x %zu", d->upsample, d->upsample);
+  if (moving) pair("light of", "%s", abbe_view_stage_name(app->moved.light));
 }
 
+/* Two lines, also where the second is empty, for widgets below stay where they are. */
 static void draw_head(abbe_view_session *app) {
   const abbe_view_state *s = &app->state;
+  const abbe_view_stage next = coming(&s->refine);
+  const char *word = abbe_view_stage_word(app->stage);
   char text[160];
-  const char *doing = abbe_view_stage_name(app->stage);
-  if (app->pictures.rendered.data == NULL)
-    snprintf(text, sizeof text, "loading");
-  else if (app->stage == ABBE_VIEW_MOVING && abbe_view_session_rate(app) > 0)
-    abbe_number_format(text, sizeof text, "moving, %.0f pictures a second",
+  if (app->stage == ABBE_VIEW_MOVING && abbe_view_session_rate(app) > 0)
+    abbe_number_format(text, sizeof text, "%s, %.0f pictures a second", word,
                        abbe_view_session_rate(app));
   else if (app->passes > 0)
-    snprintf(text, sizeof text, "traced, %zu passes", app->passes);
+    snprintf(text, sizeof text, "%s, %zu of %d passes", word, app->passes, ABBE_VIEW_TRACED_PASSES);
   else
-    snprintf(text, sizeof text, "%s", doing);
+    snprintf(text, sizeof text, "%s", word);
   abbe_ui_text(app->stage >= ABBE_VIEW_ACCURATE ? GREEN : DIM, text);
-  draw_made(app);
+  snprintf(text, sizeof text, " ");
+  if (next == ABBE_VIEW_TRACED && next != app->stage)
+    snprintf(text, sizeof text, "is now checked by tracing");
+  else if (next != ABBE_VIEW_NONE && next != app->stage)
+    abbe_number_format(text, sizeof text, "%s: %.0f %%", abbe_view_stage_word(next),
+                       100 * abbe_view_worker_done(app->desk[1 - s->refine.shows].worker));
+  abbe_ui_text(DIM, text);
   if (s->refusal[0] != '\0') abbe_ui_text(WARM, s->refusal);
   if (app->note[0] != '\0') abbe_ui_text(DIM, app->note);
+}
+
+/* What it is made of: the outline's names and colours, stones parted from glasses. */
+static void choose_material(abbe_view_session *app, const abbe_view_object *object, double now_s) {
+  const abbe_view_outline *o = &app->state.outline;
+  const char *names[ABBE_VIEW_MOST_STONES + 1];
+  abbe_ui_colour colours[ABBE_VIEW_MOST_STONES + 1];
+  char key[ABBE_VIEW_KEY + 16], label[ABBE_VIEW_NAME + 16], *value = NULL;
+  const size_t total = object->mirror ? o->metal_count : o->stone_count;
+  size_t count = 0, at = SIZE_MAX;
+  snprintf(key, sizeof key, "%s.%s", object->key, object->mirror ? "mirror" : "material");
+  const char *set = abbe_view_document_value(abbe_view_history_now(&app->state.history), key);
+  for (size_t i = 0; i < total; i++) {
+    const char *name = object->mirror ? o->metal[i] : o->stone[i];
+    if (!object->mirror && i == o->glasses_from && i > 0) names[count++] = NULL;
+    if (strcmp(name, object->material) == 0 && at == SIZE_MAX) at = count; /* in quotes, if set */
+    if (set != NULL && strcmp(name, set) == 0) at = count;
+    colours[count] = object->mirror ? o->metal_colour[i] : o->stone_colour[i];
+    names[count++] = name;
+  }
+  snprintf(label, sizeof label, "%s, of", object->name);
+  if (abbe_ui_choose(label, names, colours, count, &at) &&
+      abbe_yaml_quote_make(names[at], &value, NULL) == ABBE_OK)
+    abbe_view_state_set(&app->state, key, value, false, now_s);
+  free(value);
 }
 
 /* What it is made of, and its proportions. */
 static void draw_object(abbe_view_session *app, const abbe_view_object *object, bool one_of_many,
                         double now_s) {
-  abbe_view_state *s = &app->state;
-  const abbe_view_outline *o = &s->outline;
-  char key[ABBE_VIEW_KEY + 16], label[ABBE_VIEW_NAME + 16], *value = NULL;
-  const size_t count = object->mirror ? o->metal_count : o->stone_count;
-  char *const *names = object->mirror ? o->metal : o->stone;
-  size_t at = 0;
-  snprintf(key, sizeof key, "%s.%s", object->key, object->mirror ? "mirror" : "material");
-  const char *set = abbe_view_document_value(abbe_view_history_now(&s->history), key);
-  const char *is = set != NULL ? set : object->material;
-  while (at < count && strcmp(names[at], is) != 0) at++;
-  if (at == count) /* in quotes */
-    for (at = 0; at < count && strcmp(names[at], object->material) != 0;) at++;
-  snprintf(label, sizeof label, "%s, of", object->name);
   abbe_ui_scope_begin(object->key);
-  if (abbe_ui_choose(label, (const char *const *)names, count, &at) &&
-      abbe_yaml_quote_make(names[at], &value, NULL) == ABBE_OK)
-    abbe_view_state_set(s, key, value, false, now_s);
-  free(value);
+  choose_material(app, object, now_s);
   for (size_t k = 0; k < object->value_count; k++)
     slide(app, &object->value[k], one_of_many ? object->name : "", false, now_s);
   abbe_ui_scope_end();
@@ -134,7 +139,7 @@ static void draw_scene(abbe_view_session *app, double now_s) {
     names[i] = abbe_file_name(app->scene[i]);
     if (strcmp(app->scene[i], path) == 0) at = i;
   }
-  if (abbe_ui_choose("scene", names, app->scene_count, &at)) {
+  if (abbe_ui_choose("scene", names, NULL, app->scene_count, &at)) {
     abbe_view_state_open(s, app->scene[at], now_s);
     app->edition++; /* whoever has read it before does so again */
     return;
@@ -162,7 +167,8 @@ static void draw_view(abbe_view_session *app) {
   const char *names[MOST_DISPLAYS];
   char *views = app->views != NULL ? strdup(app->views) : NULL;
   size_t count = 0, at = s->shown, view = app->view;
-  if (abbe_ui_choose("shown", shown, ABBE_VIEW_SHOWN_COUNT, &at)) s->shown = (abbe_view_shown)at;
+  if (abbe_ui_choose("shown", shown, NULL, ABBE_VIEW_SHOWN_COUNT, &at))
+    s->shown = (abbe_view_shown)at;
   if (app->drawn == ABBE_VIEW_DIFFERENCE_PICTURE)
     abbe_ui_text(DIM, "blue: darker than traced, red: brighter; full at 25 % of the mean");
   if (app->drawn == ABBE_VIEW_ERROR_PICTURE)
@@ -181,7 +187,7 @@ static void draw_view(abbe_view_session *app) {
     line = end != NULL ? end + 1 : NULL;
   }
   abbe_error error = {0};
-  if (abbe_ui_choose("display", names, count, &view) &&
+  if (abbe_ui_choose("display", names, NULL, count, &view) &&
       abbe_view_session_choose_view(app, view, &error) != ABBE_OK)
     snprintf(app->note, sizeof app->note, "%s", error.text);
   free(views);
@@ -226,6 +232,7 @@ static void draw_error(const abbe_view_session *app) {
 
 static void draw_passes(const abbe_view_session *app) {
   const abbe_view_result *r = &app->last;
+  draw_made(app);
   if (r->counted) pair("frame", "%.0f ms", r->statistics.frame_ms);
   for (size_t i = 0; i < r->line_count; i++) {
     const abbe_view_line *line = &r->line[i];
@@ -328,6 +335,8 @@ void abbe_view_panel_draw(abbe_view_session *app, double now_s) {
   abbe_ui_beside();
   if (abbe_ui_button("turntable") && abbe_view_turn_begin(app, &error) != ABBE_OK)
     snprintf(app->note, sizeof app->note, "%s", error.text);
+  abbe_ui_beside();
+  if (abbe_ui_button("keys")) app->keys = !app->keys;
   abbe_ui_gap();
   if (s->picked && abbe_ui_section("Pixel", true)) draw_pixel(app);
   if (abbe_ui_section("Scene", true)) draw_scene(app, now_s);

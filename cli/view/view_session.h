@@ -33,6 +33,7 @@ typedef struct abbe_view_session {
   abbe_view_desk desk[ABBE_VIEW_WORKERS];
   const abbe_gl *gl;
   const char *keep, *ocio, *materials, *volume_path;
+  char elsewhere[512]; /* folder of what is kept, with its slash; "": the current one */
   const abbe_caustic_volume *volume;
   abbe_display *display;
   abbe_view_table *table; /* its table, from the first picture on; or NULL */
@@ -80,6 +81,7 @@ typedef struct abbe_view_session {
   double stop_ms;        /* what was made for the one before took to stop; the last times */
   size_t turn_frame;     /* frame of the turntable, from 1; 0: it stands */
   uint64_t turn_serial;  /* what it turns */
+  bool keys;             /* the list of keys is open */
   bool exposed;          /* the scene's own exposure was taken over */
   bool turned;           /* the last one is whole */
   char note[1200];       /* what was saved, or why not */

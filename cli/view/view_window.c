@@ -51,9 +51,16 @@ static void on_key(GLFWwindow *handle, int key, int code, int action, int mods) 
   if (key == GLFW_KEY_BACKSPACE) w->input.backspace = down;
   if (key == GLFW_KEY_ESCAPE) w->input.escape = down;
   if (abbe_ui_has_keys()) return;
-  const int character = character_of(key, code);
+  const int character = key == GLFW_KEY_F1 ? 'h' : character_of(key, code);
   if (character != 0)
     abbe_view_app_key(&w->session, character, down, modifiers_of(mods), abbe_clock_seconds());
+}
+
+/* Which key has it, layouts tell. */
+static void on_character(GLFWwindow *handle, unsigned character) {
+  window *w = glfwGetWindowUserPointer(handle);
+  if (character == '?' && !abbe_ui_has_keys())
+    abbe_view_app_key(&w->session, '?', true, 0, abbe_clock_seconds());
 }
 
 static void on_wheel(GLFWwindow *handle, double across, double along) {
@@ -156,6 +163,7 @@ abbe_result abbe_view_window_run(const abbe_view_app_desc *desc, size_t width, s
   if (result == ABBE_OK) {
     glfwSetWindowUserPointer(w->handle, w);
     glfwSetKeyCallback(w->handle, on_key);
+    glfwSetCharCallback(w->handle, on_character);
     glfwSetScrollCallback(w->handle, on_wheel);
     glfwSetCursorPosCallback(w->handle, on_move);
     glfwSetMouseButtonCallback(w->handle, on_button);

@@ -24,6 +24,10 @@ ABBE_STUDIO_LOOKS(LOOK)
 static const char *const settings[] = {ABBE_SETTING_KINDS(SETTING_NAME)};
 #undef SETTING_NAME
 
+const char *abbe_studio_setting_name(int setting) {
+  return settings[setting - 1];
+}
+
 /* Between the outlines of stones in a row, of the larger of them. */
 #define GAP 0.35
 /* Where stones together are wider than this, m, the looks are made larger. */

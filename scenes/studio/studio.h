@@ -52,6 +52,9 @@ typedef struct abbe_studio {
   size_t more_count;
 } abbe_studio;
 
+/* Name of a studio's setting, which is not 0. */
+const char *abbe_studio_setting_name(int setting);
+
 /* Whether a path ends like a stone's file. */
 bool abbe_studio_is_stone(const char *path);
 

@@ -157,14 +157,19 @@ void abbe_view_pace_take(abbe_view_pace *p, size_t light_step, size_t eye_step, 
   p->eye_step = next[1];
 }
 
+#define NAME(code, name, word) name,
+#define WORD(code, name, word) word,
 const char *abbe_view_stage_name(abbe_view_stage stage) {
-  static const char *const names[] = {
-#define ABBE_VIEW_NAME(code, name) name,
-      ABBE_VIEW_STAGES(ABBE_VIEW_NAME)
-#undef ABBE_VIEW_NAME
-  };
+  static const char *const names[] = {ABBE_VIEW_STAGES(NAME)};
   return stage < ABBE_VIEW_STAGE_COUNT ? names[stage] : "unknown";
 }
+
+const char *abbe_view_stage_word(abbe_view_stage stage) {
+  static const char *const words[] = {ABBE_VIEW_STAGES(WORD)};
+  return stage < ABBE_VIEW_STAGE_COUNT ? words[stage] : "unknown";
+}
+#undef NAME
+#undef WORD
 
 void abbe_view_refine_begin(abbe_view_refine *refine) {
   *refine = (abbe_view_refine){.serial = 1, .scene = 1, .changed_s = -INFINITY};

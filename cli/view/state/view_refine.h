@@ -49,21 +49,22 @@ typedef struct abbe_view_pace {
 void abbe_view_pace_take(abbe_view_pace *pace, size_t light_step, size_t eye_step, bool lit,
                          double ms);
 
-/* X(code, name) */
+/* X(code, name, what the window calls it) */
 #define ABBE_VIEW_STAGES(X)                                                                        \
-  X(NONE, "none")                                                                                  \
-  X(MOVING, "moving")                                                                              \
-  X(BALANCED, "balanced")                                                                          \
-  X(ACCURATE, "accurate")                                                                          \
-  X(MEAN, "mean")                                                                                  \
-  X(TRACED, "traced")
+  X(NONE, "none", "loading")                                                                       \
+  X(MOVING, "moving", "preview")                                                                   \
+  X(BALANCED, "balanced", "good")                                                                  \
+  X(ACCURATE, "accurate", "better")                                                                \
+  X(MEAN, "mean", "best")                                                                          \
+  X(TRACED, "traced", "checked by tracing")
 typedef enum abbe_view_stage {
-#define ABBE_VIEW_ENUM(code, name) ABBE_VIEW_##code,
+#define ABBE_VIEW_ENUM(code, name, word) ABBE_VIEW_##code,
   ABBE_VIEW_STAGES(ABBE_VIEW_ENUM)
 #undef ABBE_VIEW_ENUM
       ABBE_VIEW_STAGE_COUNT
 } abbe_view_stage;
 const char *abbe_view_stage_name(abbe_view_stage stage);
+const char *abbe_view_stage_word(abbe_view_stage stage);
 
 #define ABBE_VIEW_REST_S 0.15
 #define ABBE_VIEW_TRACED_PASSES 64

@@ -73,6 +73,7 @@ struct abbe_view_worker {
   pthread_cond_t signal;
   void (*wake)(void);
   volatile int stop, quit;
+  volatile float share;              /* done of what it draws */
   const abbe_caustic_volume *volume; /* or NULL */
   bool busy, done;
   abbe_view_request request;
@@ -106,14 +107,15 @@ void abbe_view_result_free(abbe_view_result *result) {
 static const double spot_s = 4; /* for a pixel's spectrum */
 
 static bool goes_on(void *user, double done) {
-  const abbe_view_worker *w = user;
-  (void)done;
+  abbe_view_worker *w = user;
+  w->share = (float)done;
   return !w->stop;
 }
 
 /* By the thread's watch. */
 static bool is_wanted(void *user) {
-  return goes_on(user, 0);
+  const abbe_view_worker *w = user;
+  return !w->stop;
 }
 
 /* ---- settings ---- */
@@ -442,8 +444,13 @@ void abbe_view_worker_give(abbe_view_worker *w, abbe_view_request *request) {
   *request = (abbe_view_request){0};
   w->busy = true;
   w->stop = 0;
+  w->share = 0;
   pthread_cond_broadcast(&w->signal);
   pthread_mutex_unlock(&w->lock);
+}
+
+double abbe_view_worker_done(const abbe_view_worker *w) {
+  return (double)w->share;
 }
 
 void abbe_view_worker_cancel(abbe_view_worker *w) {

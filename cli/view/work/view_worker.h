@@ -86,6 +86,8 @@ void abbe_view_worker_free(abbe_view_worker *worker);
 
 /* Whether a request may be given. */
 bool abbe_view_worker_idle(abbe_view_worker *worker);
+/* The share of the picture that is done, 0 to 1. */
+double abbe_view_worker_done(const abbe_view_worker *worker);
 /* Takes the request over; only while idle. */
 void abbe_view_worker_give(abbe_view_worker *worker, abbe_view_request *request);
 /* What is being done ends soon, with ABBE_VIEW_CANCELLED. */

@@ -41,7 +41,8 @@ TEST(what_is_wrong_is_said_and_the_picture_stays) {
 }
 
 /* The design is one of the scene's files: it is read again when it changes, and the scene is kept
- * where it finds it, however that folder is written. */
+ * beside it as it was, however that folder is written; elsewhere it names the design by its whole
+ * path, and so does the scene that is made of a stone's file. */
 TEST(a_design_is_a_file_of_the_scene) {
   run_must("mkdir in out && cp \"$house\"/scenes/designs/step-square.asc in/a.asc && \"$abbe\" gem "
            "retarget in/a.asc --crown 38 -o in/b.asc -q && sed 's/shape: gem/shape: cut/; "
@@ -52,11 +53,22 @@ TEST(a_design_is_a_file_of_the_scene) {
   run_must("\"$abbe\" view in/cut.yaml " FEW
            "--last balanced --size 420x64 --keep \"$PWD/in/kept\" --script a.txt && cmp "
            "in/cut.yaml in/kept.yaml");
-  run_must("printf '%s\\n' 'wait balanced' 'key control+s' 'assert note contains own' > a.txt");
+  run_must(
+      "printf '%s\\n' 'wait balanced' 'key control+s' 'assert note contains kept' 'say command' "
+      "> a.txt");
   run_must("\"$abbe\" view in/cut.yaml " FEW
-           "--last balanced --size 420x64 --keep out/kept --script a.txt && ! test -e "
-           "out/kept.yaml && test -e out/kept.exr");
-  run_clears("rm -r in out a.txt");
+           "--last balanced --size 420x64 --keep out/kept --script a.txt && grep -q \"file: "
+           "$PWD/in/a.asc\" out/kept.yaml && \"$abbe\" plan out/kept.yaml >/dev/null");
+  run_must(
+      "\"$abbe\" view in/a.asc --material quartz --look velvet " FEW
+      "--last balanced --size 420x64 --keep out/stone --script a.txt > said && grep -q \"file: "
+      "$PWD/in/a.asc\" out/stone.yaml && \"$abbe\" plan out/stone.yaml >/dev/null");
+  run_must("grep -q '^command abbe render in/a.asc --material quartz --look velvet' said");
+  /* no file can be written in a folder that is gone */
+  run_must("mkdir gone home && p=$PWD && cd gone && rmdir ../gone && HOME=$p/home \"$abbe\" view "
+           "$p/in/cut.yaml " FEW "--last balanced --size 420x64 --script $p/a.txt && test -s "
+           "$p/home/cut-view.png && \"$abbe\" plan $p/home/cut-view.yaml >/dev/null");
+  run_clears("rm -r in out home said a.txt");
 }
 
 /* Its sliders begin at its own angles; the same angles are set for other commands. */
