@@ -309,18 +309,6 @@ static void make_object(abbe_yaml *yaml, abbe_yaml_node list, size_t i, const ab
   outline->object_count++;
 }
 
-static bool read_materials(const abbe_material_table *table, abbe_view_outline *out) {
-  for (size_t i = 0; i < table->count; i++) {
-    const bool metal = abbe_material_is_conductor(&table->material[i]);
-    size_t *count = metal ? &out->metal_count : &out->stone_count;
-    char **name = metal ? out->metal : out->stone;
-    if (*count == ABBE_VIEW_MOST_STONES) continue;
-    if ((name[*count] = strdup(table->material[i].name)) == NULL) return false;
-    ++*count;
-  }
-  return true;
-}
-
 abbe_result abbe_view_outline_make(const abbe_scene *scene, const char *text, size_t size,
                                    abbe_view_outline *out, abbe_error *error) {
   abbe_yaml *yaml = NULL;
@@ -349,7 +337,7 @@ abbe_result abbe_view_outline_make(const abbe_scene *scene, const char *text, si
                                    .value = scene->ambient,
                                    .max = 2,
                                    .scale = 1};
-  if (!read_materials(&scene->table, out))
+  if (!abbe_view_outline_list_materials(&scene->table, out))
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the names of materials");
   abbe_yaml_free(yaml);
   if (result != ABBE_OK) abbe_view_outline_free(out);

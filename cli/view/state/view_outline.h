@@ -61,8 +61,12 @@ typedef struct abbe_view_outline {
   size_t light_count, object_count, stone_count, metal_count;
   abbe_view_light light[ABBE_SCENE_MAX_LIGHTS];
   abbe_view_object object[ABBE_VIEW_MOST_OBJECTS];
-  /* names of the scene's table of materials: those that are clear, and metals */
+  /* names of the scene's table of materials: those that are clear, stones before glasses and
+   * liquids, and metals; and their colours, 0xRRGGBB of sRGB: of white light after 1 cm of the one,
+   * reflected by the other */
+  size_t glasses_from; /* the first of stone[] that is none */
   char *stone[ABBE_VIEW_MOST_STONES], *metal[ABBE_VIEW_MOST_STONES];
+  unsigned stone_colour[ABBE_VIEW_MOST_STONES], metal_colour[ABBE_VIEW_MOST_STONES];
   bool surrounded; /* an environment is there, with this value: */
   abbe_view_value rotate;
   abbe_view_value ambient;
@@ -73,6 +77,8 @@ typedef struct abbe_view_outline {
 abbe_result abbe_view_outline_make(const abbe_scene *scene, const char *text, size_t size,
                                    abbe_view_outline *out, abbe_error *error);
 void abbe_view_outline_free(abbe_view_outline *outline);
+/* The table's materials into an outline; false without memory. */
+bool abbe_view_outline_list_materials(const abbe_material_table *table, abbe_view_outline *out);
 
 /* The whole transform of an object as a value to be set: as it was, but tilted about the origin of
  * its shape by `tilt_rad` about `axis` (0: not), and moved to `translate`. False where it does not

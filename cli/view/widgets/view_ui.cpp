@@ -123,8 +123,8 @@ void dress() {
                  {ImGuiCol_FrameBg, 0x262a31},
                  {ImGuiCol_FrameBgHovered, 0x30353e},
                  {ImGuiCol_FrameBgActive, 0x363c47},
-                 {ImGuiCol_SliderGrab, 0x7f93b2},
-                 {ImGuiCol_SliderGrabActive, 0xa5b9d8},
+                 {ImGuiCol_SliderGrab, 0x46587a},
+                 {ImGuiCol_SliderGrabActive, 0x5a7099},
                  {ImGuiCol_Button, 0x2b3038},
                  {ImGuiCol_ButtonHovered, 0x3a414c},
                  {ImGuiCol_ButtonActive, 0x47505e},
@@ -271,14 +271,34 @@ bool abbe_ui_slider(const char *label, double *value, double min, double max, co
   return changed;
 }
 
-bool abbe_ui_choose(const char *label, const char *const *names, size_t count, size_t *index) {
+bool abbe_ui_choose(const char *label, const char *const *names, const abbe_ui_colour *colours,
+                    size_t count, size_t *index) {
   bool chosen = false;
-  const std::string now = whole(*index < count ? names[*index] : "");
+  const bool known = *index < count && names[*index] != nullptr;
+  const std::string now = whole(known ? names[*index] : "");
   const bool open =
       ImGui::BeginCombo(whole(label).c_str(), now.c_str(), ImGuiComboFlags_HeightLarge);
-  if (!open) note(label);
-  if (!open) return false;
+  if (!open) {
+    note(label);
+    const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+    const float side = to.y - from.y, right = from.x + ImGui::CalcItemWidth() - side;
+    if (colours != nullptr && known) /* left of the arrow */
+      list()->AddRectFilled(ImVec2(right - side + 5, from.y + 5), ImVec2(right - 5, to.y - 5),
+                            colour_of(colours[*index]));
+    return false;
+  }
   for (size_t i = 0; i < count; i++) {
+    if (names[i] == nullptr) {
+      ImGui::Separator();
+      continue;
+    }
+    if (colours != nullptr) {
+      const ImVec2 corner = ImGui::GetCursorScreenPos();
+      const float side = ImGui::GetTextLineHeight();
+      list()->AddRectFilled(corner, ImVec2(corner.x + side, corner.y + side), colour_of(colours[i]));
+      ImGui::Dummy(ImVec2(side, side));
+      ImGui::SameLine();
+    }
     ImGui::PushID(static_cast<int>(i));
     if (ImGui::Selectable(whole(names[i]).c_str(), i == *index)) {
       *index = i;

@@ -57,7 +57,10 @@ bool abbe_ui_button(const char *label);
 /* Changes *value; *began (may be NULL): the hand has just taken hold of it. */
 bool abbe_ui_slider(const char *label, double *value, double min, double max, const char *format,
                     bool logarithmic, bool *began);
-bool abbe_ui_choose(const char *label, const char *const *names, size_t count, size_t *index);
+/* colours[count] (may be NULL) are shown beside the names. A name of NULL parts those before it from
+ * those behind it. */
+bool abbe_ui_choose(const char *label, const char *const *names, const abbe_ui_colour *colours,
+                    size_t count, size_t *index);
 
 /* An empty place of the panel for a drawing; false where it is out of view. */
 bool abbe_ui_place(const char *label, double width, double height, double *x, double *y);

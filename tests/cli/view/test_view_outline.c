@@ -43,7 +43,12 @@ TEST(a_studio_can_be_turned_and_its_stone_cut) {
   learn(&s); /* the scene takes both */
   assert_near(s.outline.rotate.value, 30, 0);
   assert_near(s.outline.object[0].value[1].value, 42, 0);
-  assert_true(s.outline.stone_count > 10);                            /* to choose from */
+  size_t at = 0; /* stones to choose from, red ones too, and glasses behind them */
+  while (strcmp(o->stone[at], "ruby") != 0) at++;
+  assert_true(at < o->glasses_from && o->glasses_from < o->stone_count);
+  assert_true(o->stone_colour[at] >> 16 > 2 * (o->stone_colour[at] >> 8 & 255));
+  while (strcmp(o->stone[at], "n-bk7") != 0) at++;
+  assert_true(at >= o->glasses_from && o->stone_colour[at] > 0xf0f0f0);
   abbe_view_state_set(&s, o->object[0].value[0].key, "18", false, 3); /* beyond its slider's end */
   abbe_view_state_set(&s, o->object[0].value[3].key, "2e-4", false, 4);
   learn(&s);
