@@ -168,6 +168,22 @@ static void draw_keys(void) {
   }
 }
 
+/* At the picture's edge, to each light that is not in it. */
+static void draw_arrows(const abbe_view_state *s) {
+  for (size_t i = 0; s->pictured.fov_y_rad > 0 && i < s->outline.light_count; i++) {
+    const abbe_view_light *light = &s->outline.light[i];
+    double p[2], w[2];
+    if (!light->placed ||
+        !abbe_view_camera_beyond(&s->pictured, s->width, s->height, light->position, 10, p, w))
+      continue;
+    for (int side = -1; side <= 1; side++)
+      abbe_ui_line(p[0], p[1], p[0] - 12 * w[0] + 7 * side * w[1],
+                   p[1] - 12 * w[1] - 7 * side * w[0], 0x30ffd98a, 2);
+    const double x = p[0] - 20 * w[0], right = (double)s->width - 8 * (double)strlen(light->name);
+    abbe_ui_label(fmax(4, fmin(x + 4, right)), p[1] - 20 * w[1] - 8, 0x30ffd98a, light->name);
+  }
+}
+
 void abbe_view_marks_draw(const abbe_view_session *app) {
   const abbe_view_state *s = &app->state;
   abbe_view_handle handle;
@@ -183,6 +199,7 @@ void abbe_view_marks_draw(const abbe_view_session *app) {
                     light ? s->outline.light[handle.index].name
                           : s->outline.object[handle.index].name);
   }
+  draw_arrows(s);
   if (s->picked) {
     draw_feed(app);
     const double x = (double)s->pixel[0] + 0.5, y = (double)s->pixel[1] + 0.5;

@@ -101,6 +101,28 @@ bool abbe_view_camera_project(const abbe_camera *camera, size_t width, size_t he
   return true;
 }
 
+bool abbe_view_camera_beyond(const abbe_camera *camera, size_t width, size_t height,
+                             const double point[3], double inside, double xy[2], double way[2]) {
+  const double half[2] = {0.5 * (double)width, 0.5 * (double)height};
+  double at[2], to[3], forward[3], right[3], up[3];
+  if (abbe_view_camera_project(camera, width, height, point, at) && at[0] >= 0 && at[1] >= 0 &&
+      at[0] <= 2 * half[0] && at[1] <= 2 * half[1])
+    return false;
+  abbe_vector_subtract(point, camera->eye, to);
+  abbe_vector_subtract(camera->target, camera->eye, forward);
+  abbe_vector_cross(forward, camera->up, right);
+  abbe_vector_cross(right, forward, up);
+  if (!abbe_vector_normalise(right) || !abbe_vector_normalise(up)) return false;
+  way[0] = abbe_vector_dot(to, right);
+  way[1] = -abbe_vector_dot(to, up);
+  const double length = hypot(way[0], way[1]);
+  for (int k = 0; k < 2; k++) way[k] = length > 0 ? way[k] / length : k; /* straight behind: down */
+  const double reach = fmin((half[0] - inside) / fmax(1e-9, fabs(way[0])),
+                            (half[1] - inside) / fmax(1e-9, fabs(way[1])));
+  for (int k = 0; k < 2; k++) xy[k] = half[k] + fmax(0, reach) * way[k];
+  return true;
+}
+
 void abbe_view_camera_point(const abbe_camera *camera, size_t width, size_t height,
                             const double xy[2], double distance, double out[3]) {
   const double uv[2] = {xy[0] / (double)width, 1 - xy[1] / (double)height};

@@ -24,6 +24,12 @@ void abbe_view_camera_fly(abbe_camera *camera, const double step[3]);
 bool abbe_view_camera_project(const abbe_camera *camera, size_t width, size_t height,
                               const double point[3], double xy[2]);
 
+/* Where an arrow at the picture's edge, so many pixels inside, points to what is out of it or
+ * behind the camera, and the arrow's direction, unit; false where the point shows in the picture.
+ */
+bool abbe_view_camera_beyond(const abbe_camera *camera, size_t width, size_t height,
+                             const double point[3], double inside, double xy[2], double way[2]);
+
 /* The point that a place in the picture shows, so far from the camera, m. */
 void abbe_view_camera_point(const abbe_camera *camera, size_t width, size_t height,
                             const double xy[2], double distance, double out[3]);

@@ -95,6 +95,28 @@ TEST(what_is_dragged_follows) {
   assert_near(shown[1], to[1], 1.0); /* upright lines lean by perspective */
 }
 
+/* Arrows point to what is out of the picture, above, behind and straight behind the camera. */
+TEST(what_is_beyond_is_pointed_to) {
+  static const double half = 0.70710678118654752;
+  static const struct {
+    double point[3], xy[2], way[2];
+  } cases[] = {{{0, 0, 5}, {200, 10}, {0, -1}},
+               {{9, -3, 0}, {390, 100}, {1, 0}},
+               {{3, -4, 3}, {290, 10}, {half, -half}},
+               {{0, -4, 0}, {200, 190}, {0, 1}}};
+  const abbe_camera c = straight();
+  const double seen[3] = {0.1, 0, 0.1};
+  double xy[2], way[2];
+  assert_false(abbe_view_camera_beyond(&c, 400, 200, seen, 10, xy, way));
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    assert_true(abbe_view_camera_beyond(&c, 400, 200, cases[i].point, 10, xy, way));
+    for (int k = 0; k < 2; k++) {
+      assert_near(xy[k], cases[i].xy[k], 1e-9);
+      assert_near(way[k], cases[i].way[k], 1e-12);
+    }
+  }
+}
+
 TEST(drags_above_the_horizon_move_nothing) {
   const abbe_camera c = straight();
   const double p[3] = {0, 0, -1}, from[2] = {200, 150}, sky[2] = {200, 20};
