@@ -328,7 +328,7 @@ abbe_result abbe_known_chart_write(const char *path, const abbe_known_answers *a
        .series_count = 2,
        .series = falling},
       {.title = "Errors of all known answers",
-       .x = {.label = "row", .max = 1.3 * (double)answers->count + 1}, /* space for the legend */
+       .x = {.label = "row", .max = 1.5 * (double)answers->count + 1}, /* space for the legend */
        .y = {.label = "error / tolerance", .min = -reach, .max = reach},
        .series_count = count,
        .series = groups},
