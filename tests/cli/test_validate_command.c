@@ -11,6 +11,30 @@ TEST(a_group_as_text) {
   assert_string_equal(run_errors, "");
 }
 
+/* The page's table has as many as the program, of the groups that take no time; all of them
+ * together are what the README rounds down. */
+TEST(the_pages_count_the_answers) {
+  static const char page[] = ABBE_SOURCE_DIR "/docs/validation.md";
+  static const char *const groups[] = {"prism",   "slit", "ball",    "nest",   "slab",
+                                       "fresnel", "film", "crystal", "rainbow"};
+  for (size_t i = 0; i < sizeof groups / sizeof *groups; i++) {
+    assert_int_equal(
+        run_line(
+            printed("awk -F '[|]' 'NF == 5 && $4 > 0 && $2 == \" `%s` \" {print \"n\" $4 + 0}' %s",
+                    groups[i], page)),
+        0);
+    const int count = atoi(run_output + 1);
+    run_says(printed("\"$abbe\" validate --only %s", groups[i]),
+             printed("%d of %d known answers", count, count));
+  }
+  run_says(printed("awk -F '[|]' '/^## /{in_it = /Known answers/} in_it && NF == 5 {n += $4} END "
+                   "{print \"over \" int(n / 100) * 100}' %s",
+                   page),
+           "over ");
+  const int all = atoi(strstr(run_output, "over ") + 5);
+  run_says("cat " ABBE_SOURCE_DIR "/README.md", printed("passes over %d answers", all));
+}
+
 TEST(a_group_as_json) {
   HELD(cJSON, json) = run_json("\"$abbe\" validate --only prism --json", 0);
   const cJSON *list = cJSON_GetObjectItem(json, "answers"), *row = cJSON_GetArrayItem(list, 1);

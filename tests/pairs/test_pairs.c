@@ -10,11 +10,8 @@
   "the model 'layers' ends paths after four exits, and knows inner ones roughly: a diamond keeps " \
   "light for many"
 #define OF_A_SAMPLE                                                                                \
-  "one sample a pixel, in its middle: facets of a diamond show their means with four times as "    \
+  "one sample a pixel, in its middle: facets of a stone show their means with four times as "      \
   "many"
-#define OF_A_DRAFT                                                                                 \
-  "48 photons a side and a map of 128 texels blur what is dark beside what is bright"
-#define OF_BALANCED "of the settings of 'balanced'; by those of 'accurate' it is right"
 #define OF_DIRECTIONS                                                                              \
   "the volume's crystal absorbs by the light's direction; the traces here have the mean over its " \
   "axes, as the renderer has"
@@ -25,9 +22,7 @@ static const struct {
     {"diamond", "ball", "layers", "balanced", "stone", "light", BY_LAYERS},
     {"diamond", "ball", "layers", "balanced", "caustic", "light", BY_LAYERS},
     {"diamond", "haze", "default", "balanced", "stone", "light", OF_A_SAMPLE},
-    {"diamond", "water", "default", "moving", "caustic", "light", OF_A_DRAFT},
-    {"ruby", "water", "pinhole", "balanced", "stone", "light", OF_BALANCED},
-    {"ruby", "water", "pinhole", "balanced", "caustic", "light", OF_BALANCED},
+    {"ruby", "water", "pinhole", "balanced", "stone", "light", OF_A_SAMPLE},
     {"ruby", "alone", "volume", "balanced", "caustic", "hue", OF_DIRECTIONS},
     {"ruby", "alone", "volume", "balanced", "caustic", "light", OF_DIRECTIONS},
     {"emerald", "alone", "volume", "accurate", "caustic", "hue", OF_DIRECTIONS},

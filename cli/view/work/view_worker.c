@@ -1,6 +1,7 @@
 #include "cli/view/work/view_worker.h"
 
 #include "base/clock.h"
+#include "base/maths.h"
 #include "base/thread/watch.h"
 #include "cli/options/own_context.h"
 #include "cli/view/picture/view_feed.h"
@@ -24,6 +25,27 @@ const abbe_preset_point *abbe_view_settings_point(const abbe_preset_front *front
   return at < front->count ? &front->point[at] : NULL;
 }
 
+static double diagonal(const double min[3], const double max[3]) {
+  double across[3];
+  abbe_vector_subtract(max, min, across);
+  return abbe_vector_length(across);
+}
+
+/* Presets are measured of refractors alone: in or beside a larger one a refractor has as many
+ * photons and texels as alone, up to these. */
+static void look_closer(const abbe_scene *scene, abbe_render_desc *desc) {
+  enum { PHOTONS = 256, TEXELS = 1024 };
+  double least = INFINITY, min[3], max[3];
+  if (scene == NULL || !abbe_scene_bounds(scene, true, false, min, max)) return;
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_REFRACTOR)
+      least = fmin(least, diagonal(scene->object[i].min, scene->object[i].max));
+  const double times = fmax(diagonal(min, max) / least, 1);
+  if (desc->photons < PHOTONS) desc->photons = (size_t)fmin(times * (double)desc->photons, PHOTONS);
+  if (desc->map_size < TEXELS)
+    desc->map_size = (size_t)fmin(times * (double)desc->map_size, TEXELS);
+}
+
 /* A stage's settings; where no sweep has measured such scenes, the plan's own and what is coarser
  * and finer than these. */
 static abbe_render_desc of_stage(const abbe_preset_front *front, const abbe_scene *scene,
@@ -37,6 +59,7 @@ static abbe_render_desc of_stage(const abbe_preset_front *front, const abbe_scen
   } else if (stage >= ABBE_VIEW_ACCURATE) {
     desc = (abbe_render_desc){.wavelengths = 21, .photons = 512, .supersample = 2};
   }
+  look_closer(scene, &desc);
   return desc;
 }
 

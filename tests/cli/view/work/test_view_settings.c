@@ -62,3 +62,24 @@ TEST(a_documents_settings_hold_at_rest) {
   assert_int_not_equal(b.photons, 77);
   assert_int_not_equal(b.map_size, 333);
 }
+
+/* A stone under water has what it has alone, as far as it is not fine enough by itself. */
+TEST(a_small_refractor_beside_a_large_one_is_looked_at_closer) {
+  static const abbe_material water = {0};
+  abbe_object object[2] = {{.material = &water, .max = {5, 0, 0}},
+                           {.material = &water, .max = {1, 0, 0}}};
+  const abbe_scene scene = {.object = object, .object_count = 2};
+  static abbe_preset_point own[] = {{.desc = {.photons = 24, .map_size = 128}},
+                                    {.desc = {.photons = 64, .map_size = 256}},
+                                    {.desc = {.photons = 512, .map_size = 2048}}};
+  const abbe_preset_front front = {.named = {0, 1, 2}, .count = 3, .point = own};
+  const size_t right[][2] = {{120, 640}, {256, 1024}, {512, 2048}};
+  const abbe_view_stage stages[] = {ABBE_VIEW_MOVING, ABBE_VIEW_BALANCED, ABBE_VIEW_ACCURATE};
+  const abbe_view_document none = {0};
+  for (int i = 0; i < 3; i++) {
+    const abbe_view_job job = {.stage = stages[i], .light = stages[i]};
+    const abbe_render_desc desc = abbe_view_settings_of(&front, &scene, &job, &none, NULL);
+    assert_int_equal(desc.photons, right[i][0]);
+    assert_int_equal(desc.map_size, right[i][1]);
+  }
+}
