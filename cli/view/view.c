@@ -1,5 +1,6 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
+#include "cli/options/picture_options.h"
 #include "cli/options/scene_input.h"
 #include "gl/plan/facts/render_desc.h"
 
@@ -18,6 +19,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum {
   OPTION_SCRIPT = 0x100,
@@ -34,7 +36,12 @@ enum {
   OPTION_MATERIAL
 };
 
+enum { MOST_PICTURES = 16 };
+
 typedef struct view_options {
+  abbe_spectral_options spectral;
+  const char *picture[MOST_PICTURES];
+  size_t pictures;
   const char *program, *scene, *script, *keep, *materials, *ocio, *volume;
   size_t width, height, wavelengths, photons, map_size;
   int last, port; /* port below 0: nothing is served */
@@ -83,6 +90,47 @@ static const abbe_take takes[] = {
     {0},
 };
 
+/* By its ending: a picture to look at, whether it can be read or not. */
+static bool is_picture(const char *path) {
+  static const char *const endings[] = {".exr",  ".hdr",  ".pic", ".png",  ".avif", ".jpg",
+                                        ".jpeg", ".webp", ".tif", ".tiff", ".gif",  ".jxl"};
+  const char *dot = strrchr(path, '.');
+  for (size_t i = 0; dot != NULL && i < sizeof endings / sizeof *endings; i++) {
+    const size_t n = strlen(endings[i]);
+    if (strncasecmp(dot, endings[i], n) == 0 && (dot[n] == '\0' || dot[n] == '#')) return true;
+  }
+  return false;
+}
+
+static void take_file(view_options *o, const char *path, struct argp_state *state) {
+  if (!is_picture(path)) {
+    abbe_scene_input_take_file(&o->changes, &o->scene, path, state);
+    return;
+  }
+  if (o->pictures == MOST_PICTURES)
+    argp_error(state, "at most %d pictures are looked at at once", MOST_PICTURES);
+  o->picture[o->pictures++] = path;
+  abbe_arguments_add(o->program, ABBE_ARGUMENT_READS, "the picture", path);
+}
+
+/* What is for a scene alone, or for pictures alone. */
+static void check_pictures(const view_options *o, struct argp_state *state) {
+  const char *scene = o->scene               ? o->scene
+                      : o->keep              ? "--keep"
+                      : o->last > 0          ? "--last"
+                      : o->materials         ? "--materials"
+                      : o->volume            ? "--volume"
+                      : o->changes.set_count ? "--set"
+                      : o->wavelengths > 0   ? "--wavelengths"
+                      : o->photons > 0       ? "--photons"
+                      : o->map_size > 0      ? "--map"
+                                             : NULL;
+  if (o->pictures > 0 && scene != NULL)
+    argp_error(state, "pictures are looked at without a scene: leave out %s", scene);
+  if (o->pictures == 0 && o->spectral.given)
+    argp_error(state, "--observer, --lit-by and --illuminant are for pictures of bands");
+}
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   static const char *const stages[] = {"moving", "balanced", "accurate", "mean", "traced"};
   view_options *o = state->input;
@@ -97,15 +145,20 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_LAST:
     o->last = 1 + abbe_command_choice(o->program, "--last", text, stages, 5);
     return 0;
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &o->spectral;
+    return 0;
   case ARGP_KEY_ARG:
-    abbe_scene_input_take_file(&o->changes, &o->scene, text, state);
+    take_file(o, text, state);
     return 0;
   case ARGP_KEY_END:
-    if (o->scene == NULL)
+    check_pictures(o, state);
+    if (o->scene == NULL && o->pictures == 0)
       argp_error(
           state,
-          "which scene? Give a file such as scenes/gem.yaml, or a stone's such as round.asc");
-    if (o->changes.studio.material != NULL && !abbe_studio_is_stone(o->scene))
+          "which scene? Give a file such as scenes/gem.yaml, a stone's such as round.asc, or "
+          "pictures such as bands.exr");
+    if (o->pictures == 0 && o->changes.studio.material != NULL && !abbe_studio_is_stone(o->scene))
       argp_error(state, "--material is for a stone's file; of a scene's object NAME it is --set "
                         "objects.NAME.material=STONE");
     if (o->script != NULL && o->port >= 0)
@@ -171,7 +224,42 @@ static void return_pictures(void) {
 #endif
 }
 
-static abbe_result view(const view_options *o, abbe_error *error) {
+static abbe_result run(const view_options *o, const abbe_view_app_desc *desc, abbe_error *error) {
+  if (o->script != NULL) return abbe_view_script_run(o->script, desc, o->width, o->height, error);
+  if (o->port >= 0) return abbe_view_serve_run((unsigned)o->port, desc, o->width, o->height, error);
+  return abbe_view_window_run(desc, o->width, o->height, error);
+}
+
+/* What is wrong with a file is reported before there is a window. */
+static abbe_result view_pictures(view_options *o, abbe_error *error) {
+  abbe_inspect *pictures = calloc(1, sizeof *pictures);
+  abbe_result result = pictures != NULL ? abbe_spectral_options_load(&o->spectral, error)
+                                        : abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
+  for (size_t i = 0; i < o->pictures && result == ABBE_OK; i++) {
+    abbe_inspect_picture *p = &pictures->picture[i];
+    result = abbe_inspect_open(pictures, o->picture[i], error);
+    if (result != ABBE_OK) break;
+    abbe_command_note_part(o->picture[i], p->image.part);
+    abbe_command_note_odd(o->picture[i], &p->odd, "shown as the brightest light there is");
+    if (p->note[0] != '\0') fprintf(stderr, "note: %s\n", p->note);
+  }
+  const abbe_view_app_desc desc = {.pictures = pictures, .ocio = o->ocio};
+  if (result == ABBE_OK) {
+    pictures->look.view = o->spectral.view;
+    if (o->spectral.given)
+      while (pictures->look.entry + 1 < pictures->picture[0].count &&
+             pictures->picture[0].entry[pictures->look.entry].kind != ABBE_INSPECT_SPECTRUM)
+        pictures->look.entry++;
+    result = run(o, &desc, error);
+  }
+  if (pictures != NULL) abbe_inspect_free(pictures);
+  free(pictures);
+  abbe_spectral_options_free(&o->spectral);
+  return result;
+}
+
+static abbe_result view(view_options *o, abbe_error *error) {
+  if (o->pictures > 0) return view_pictures(o, error);
   char shipped[2 * PATH_MAX];
   abbe_view_document document;
   abbe_scene scene = {0};
@@ -196,17 +284,13 @@ static abbe_result view(const view_options *o, abbe_error *error) {
   if (result == ABBE_OK && o->volume != NULL)
     result = abbe_volume_file_read(o->volume, &volume, error);
   abbe_scene_free(&scene);
-  if (result == ABBE_OK)
-    result = o->script != NULL ? abbe_view_script_run(o->script, &desc, o->width, o->height, error)
-             : o->port >= 0
-                 ? abbe_view_serve_run((unsigned)o->port, &desc, o->width, o->height, error)
-                 : abbe_view_window_run(&desc, o->width, o->height, error);
+  if (result == ABBE_OK) result = run(o, &desc, error);
   abbe_view_document_free(&document);
   abbe_caustic_volume_free(&volume);
   return result;
 }
 #else
-static abbe_result view(const view_options *o, abbe_error *error) {
+static abbe_result view(view_options *o, abbe_error *error) {
   (void)o;
   return abbe_error_set(error, ABBE_UNSUPPORTED,
                         "this build has no window; install libglfw3-dev and libimgui-dev and build "
@@ -214,32 +298,42 @@ static abbe_result view(const view_options *o, abbe_error *error) {
 }
 #endif
 
+static const struct argp_child children[] = {
+    {&abbe_spectral_options_argp, 0, "A picture by its bands:", 3}, {0}};
+
 int abbe_command_view(int argc, char **argv) {
   static const struct argp argp = {
       options,
       parse,
-      "SCENE.yaml\nSTONE.asc...",
-      "Shows a scene in a window: turn it, change it, and see the light follow.\v"
+      "SCENE.yaml\nSTONE.asc...\nPICTURE.exr...",
+      "Shows a scene in a window: turn it, change it, and see the light follow. Or looks at "
+      "pictures: their channels, bands and spectra.\v"
       "Left drag turns, middle drag or shift moves, the wheel goes nearer, right drag\n"
       "looks about, and w a s d q e fly meanwhile. Drag a ring to move a lamp or an\n"
       "object: shift upright, control tilts, g drops. Click for a pixel's spectrum.\n"
       "b: rendered or traced, v: their difference, + -: exposure, control z and y: back\n"
-      "and forth, control s: keep, t: turntable.\n\n"
+      "and forth, control s: keep, t: turntable.\n"
+      "Pictures (.exr, .hdr, .pic, .png): click for a pixel, drag for a region, right drag\n"
+      "moves, the wheel zooms, b: the other picture, v: their difference, c: false colours,\n"
+      "+ - and e: exposure, f: all of it, 1: pixel by pixel.\n\n"
       "Examples:\n"
       "  abbe view scenes/gem.yaml\n"
       "  abbe view scenes/gem.yaml --set objects.gem.material=diamond --size 1200x800\n"
       "  abbe view scenes/gem.yaml --script tour.txt\n"
       "  abbe view docs/examples/ball.yaml --volume ball-volume.exr\n"
-      "  abbe view scenes/gem.yaml --serve 8080",
-      NULL,
+      "  abbe view scenes/gem.yaml --serve 8080\n"
+      "  abbe view bands.exr --lit-by D65 --illuminant A\n"
+      "  abbe view before.exr after.exr",
+      children,
       NULL,
       NULL};
-  view_options o = {.program = argv[0], .width = 900, .height = 560, .port = -1};
+  view_options o = {
+      .program = argv[0], .spectral.program = argv[0], .width = 900, .height = 560, .port = -1};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &o);
   abbe_error error = {0};
   const abbe_result result = view(&o, &error);
   const int code = abbe_command_end(argv[0], result, &error);
-  return result == ABBE_TOLERANCE          ? ABBE_EXIT_TOLERANCE
-         : result == ABBE_INVALID_ARGUMENT ? ABBE_EXIT_USAGE
-                                           : code;
+  return result == ABBE_TOLERANCE                             ? ABBE_EXIT_TOLERANCE
+         : result == ABBE_INVALID_ARGUMENT && o.pictures == 0 ? ABBE_EXIT_USAGE
+                                                              : code;
 }

@@ -25,7 +25,13 @@ abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc
                              .materials = desc->materials,
                              .volume_path = desc->volume_path,
                              .volume = desc->volume,
+                             .inspection = {.pictures = desc->pictures},
                              .seen_s = -1};
+  if (desc->pictures != NULL) {
+    const abbe_result shown = abbe_view_inspect_begin(app, error);
+    if (shown != ABBE_OK) abbe_view_app_end(app);
+    return shown;
+  }
   abbe_view_keep_find_place(app);
   abbe_result result = abbe_view_state_begin(&app->state, desc->document, error);
   app->state.refine.last = desc->last;
@@ -45,6 +51,7 @@ abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc
 }
 
 void abbe_view_app_end(abbe_view_session *app) {
+  abbe_view_inspect_end(app);
   for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++) { /* the second one ends while the first does */
     if (app->desk[i].worker != NULL) abbe_view_worker_cancel(app->desk[i].worker);
   }
@@ -382,6 +389,10 @@ static void feed(abbe_view_session *app, const abbe_ui_input *input, double now_
 
 void abbe_view_app_key(abbe_view_session *app, int key, bool down, int modifiers, double now_s) {
   abbe_error error = {0};
+  if (app->inspection.pictures != NULL) {
+    if (down && modifiers == 0) abbe_view_inspect_key(app, key);
+    return;
+  }
   if (down && key == 's' && (modifiers & ABBE_VIEW_CONTROL) != 0) {
     if (abbe_view_keep(app, &error) != ABBE_OK)
       snprintf(app->note, sizeof app->note, "%s", error.text);
@@ -400,6 +411,10 @@ void abbe_view_app_key(abbe_view_session *app, int key, bool down, int modifiers
 }
 
 void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, double now_s) {
+  if (app->inspection.pictures != NULL) {
+    abbe_view_inspect_frame(app, input);
+    return;
+  }
   abbe_view_state *s = &app->state;
   static const float dark[4] = {0.086F, 0.094F, 0.11F, 1};
   const double panel = fmin(ABBE_VIEW_PANEL_WIDTH, input->width);
@@ -433,6 +448,7 @@ double abbe_view_app_wait(abbe_view_session *app, double now_s) {
   const abbe_view_state *s = &app->state;
   abbe_view_job job;
   abbe_view_request request;
+  if (app->inspection.pictures != NULL) return abbe_view_app_painted(app) ? LOOK_S : 0;
   if (s->width == 0 || s->height == 0) return LOOK_S;
   if (s->fly[0] != 0 || s->fly[1] != 0 || s->fly[2] != 0) return 0;
   for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++)
@@ -451,11 +467,13 @@ bool abbe_view_app_stopped(const abbe_view_session *app) {
 }
 
 bool abbe_view_app_painted(const abbe_view_session *app) {
+  if (app->inspection.pictures != NULL) return app->inspection.whole && !app->inspection.stale;
   return !is_stale(app);
 }
 
 bool abbe_view_app_rests(abbe_view_session *app, double now_s) {
   abbe_view_request request;
+  if (app->inspection.pictures != NULL) return abbe_view_app_painted(app);
   if (is_stale(app)) return false;
   for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++)
     if (!abbe_view_worker_idle(app->desk[i].worker)) return false;

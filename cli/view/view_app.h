@@ -17,8 +17,9 @@ typedef struct abbe_view_app_desc {
   const char *ocio;                  /* configuration, or NULL */
   const char *volume_path;           /* or NULL; what it holds: */
   const abbe_caustic_volume *volume; /* that caustics are looked up in, for as long as it runs */
-  abbe_view_stage last;              /* where refining ends; NONE: nowhere */
-  void (*wake)(void);                /* or NULL */
+  abbe_inspect *pictures; /* instead of a document; NULL: none. They outlive the viewer */
+  abbe_view_stage last;   /* where refining ends; NONE: nowhere */
+  void (*wake)(void);     /* or NULL */
 } abbe_view_app_desc;
 
 /* The context is current and stays so, with the widgets' in it. Errors of abbe_view_worker_make,
@@ -63,6 +64,22 @@ void abbe_view_marks_draw(const abbe_view_session *session);
 
 /* Within an open panel. What it changes goes into the session's state. */
 void abbe_view_panel_draw(abbe_view_session *session, double now_s);
+/* A name and a value, as printf has it. */
+void abbe_view_panel_pair(const char *name, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/* The list of displays and views. */
+void abbe_view_panel_display(abbe_view_session *session);
+
+/* Pictures instead of a scene (cli/view/inspect): the same window, where session->pictures is not
+ * NULL. Each is what the function abbe_view_app_... of that name does. */
+
+abbe_result abbe_view_inspect_begin(abbe_view_session *session, abbe_error *error);
+void abbe_view_inspect_end(abbe_view_session *session);
+void abbe_view_inspect_key(abbe_view_session *session, int key);
+void abbe_view_inspect_frame(abbe_view_session *session, const abbe_ui_input *input);
+/* A value by its name, as abbe_view_session_value. */
+bool abbe_view_inspect_value(const abbe_view_session *session, const char *name, char *out,
+                             size_t size);
 
 /* The turntable of the viewer: pictures from all around, kept as PNG, and one PNG that moves. */
 

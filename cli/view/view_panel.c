@@ -19,8 +19,7 @@ enum { MOST_DISPLAYS = 512 }; /* and views of theirs, that are listed */
 #define WARM 0xffb86b
 #define GREEN 0x9ccf9c
 
-static void pair(const char *name, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void pair(const char *name, const char *format, ...) {
+void abbe_view_panel_pair(const char *name, const char *format, ...) {
   char text[160];
   va_list arguments;
   va_start(arguments, format);
@@ -62,11 +61,12 @@ static void draw_made(const abbe_view_session *app) {
   const bool moving = app->stage == ABBE_VIEW_MOVING;
   const abbe_render_desc *d = moving ? &app->moving : &app->last.desc;
   const size_t followed = abbe_render_desc_eye_wavelengths(d);
-  pair("stage", "%s", abbe_view_stage_name(app->stage));
-  if (d->photons > 0) pair("photons a side", "%zu", d->photons);
-  if (d->wavelengths > 0) pair("wavelengths", "%zu", followed);
-  if (moving && d->upsample > 1) pair("pixels together", "%zu x %zu", d->upsample, d->upsample);
-  if (moving) pair("light of", "%s", abbe_view_stage_name(app->moved.light));
+  abbe_view_panel_pair("stage", "%s", abbe_view_stage_name(app->stage));
+  if (d->photons > 0) abbe_view_panel_pair("photons a side", "%zu", d->photons);
+  if (d->wavelengths > 0) abbe_view_panel_pair("wavelengths", "%zu", followed);
+  if (moving && d->upsample > 1)
+    abbe_view_panel_pair("pixels together", "%zu x %zu", d->upsample, d->upsample);
+  if (moving) abbe_view_panel_pair("light of", "%s", abbe_view_stage_name(app->moved.light));
 }
 
 /* Two lines, also where the second is empty, for widgets below stay where they are. */
@@ -157,6 +157,23 @@ static void draw_scene(abbe_view_session *app, double now_s) {
   slide(app, &o->ambient, "", false, now_s);
 }
 
+void abbe_view_panel_display(abbe_view_session *app) {
+  const char *names[MOST_DISPLAYS];
+  char *views = app->views != NULL ? strdup(app->views) : NULL;
+  size_t count = 0, view = app->view;
+  for (char *line = views; line != NULL && *line != '\0' && count < MOST_DISPLAYS;) {
+    char *end = strchr(line, '\n');
+    if (end != NULL) *end = '\0';
+    names[count++] = line;
+    line = end != NULL ? end + 1 : NULL;
+  }
+  abbe_error error = {0};
+  if (abbe_ui_choose("display", names, NULL, count, &view) &&
+      abbe_view_session_choose_view(app, view, &error) != ABBE_OK)
+    snprintf(app->note, sizeof app->note, "%s", error.text);
+  free(views);
+}
+
 static void draw_view(abbe_view_session *app) {
   static const char *const shown[] = {
 #define ABBE_VIEW_NAME_OF(code, name) name,
@@ -164,9 +181,7 @@ static void draw_view(abbe_view_session *app) {
 #undef ABBE_VIEW_NAME_OF
   };
   abbe_view_state *s = &app->state;
-  const char *names[MOST_DISPLAYS];
-  char *views = app->views != NULL ? strdup(app->views) : NULL;
-  size_t count = 0, at = s->shown, view = app->view;
+  size_t at = s->shown;
   if (abbe_ui_choose("shown", shown, NULL, ABBE_VIEW_SHOWN_COUNT, &at))
     s->shown = (abbe_view_shown)at;
   if (app->drawn == ABBE_VIEW_DIFFERENCE_PICTURE)
@@ -180,17 +195,7 @@ static void draw_view(abbe_view_session *app) {
   if (app->drawn == ABBE_VIEW_DISTANCE_PICTURE)
     abbe_ui_text(DIM, "from the nearest to the farthest that is seen");
   if (app->drawn != s->shown) abbe_ui_text(DIM, "not there yet: the rendered picture stands");
-  for (char *line = views; line != NULL && *line != '\0' && count < MOST_DISPLAYS;) {
-    char *end = strchr(line, '\n');
-    if (end != NULL) *end = '\0';
-    names[count++] = line;
-    line = end != NULL ? end + 1 : NULL;
-  }
-  abbe_error error = {0};
-  if (abbe_ui_choose("display", names, NULL, count, &view) &&
-      abbe_view_session_choose_view(app, view, &error) != ABBE_OK)
-    snprintf(app->note, sizeof app->note, "%s", error.text);
-  free(views);
+  abbe_view_panel_display(app);
   abbe_ui_slider("exposure", &s->exposure, -8, 8, "%+.2f stops", false, NULL);
 }
 
@@ -222,10 +227,12 @@ static void draw_settings(abbe_view_session *app, double now_s) {
 }
 
 static void draw_error(const abbe_view_session *app) {
-  if (app->promised > 0) pair("promised", "%.2f \u0394E, caustic", app->promised);
-  if (app->estimated > 0) pair("estimated", "%.2f \u0394E, of the mean", app->estimated);
+  if (app->promised > 0) abbe_view_panel_pair("promised", "%.2f \u0394E, caustic", app->promised);
+  if (app->estimated > 0)
+    abbe_view_panel_pair("estimated", "%.2f \u0394E, of the mean", app->estimated);
   if (app->against > 0)
-    pair("to traced", "%.1f %% rms (noise %.1f %%)", 100 * app->against, 100 * app->noise);
+    abbe_view_panel_pair("to traced", "%.1f %% rms (noise %.1f %%)", 100 * app->against,
+                         100 * app->noise);
   if (!(app->promised > 0) && !(app->estimated > 0) && !(app->against > 0))
     abbe_ui_text(DIM, "known once the picture has come to rest");
 }
@@ -233,14 +240,14 @@ static void draw_error(const abbe_view_session *app) {
 static void draw_passes(const abbe_view_session *app) {
   const abbe_view_result *r = &app->last;
   draw_made(app);
-  if (r->counted) pair("frame", "%.0f ms", r->statistics.frame_ms);
+  if (r->counted) abbe_view_panel_pair("frame", "%.0f ms", r->statistics.frame_ms);
   for (size_t i = 0; i < r->line_count; i++) {
     const abbe_view_line *line = &r->line[i];
     if (!line->runs) continue;
     if (line->ms >= 0)
-      pair(line->name, "%.1f ms", line->ms);
+      abbe_view_panel_pair(line->name, "%.1f ms", line->ms);
     else if (line->kept)
-      pair(line->name, "kept");
+      abbe_view_panel_pair(line->name, "kept");
     else {
       abbe_ui_text(BRIGHT, line->name);
       abbe_ui_text(DIM, line->reason);
@@ -257,13 +264,13 @@ static void draw_ledger(const abbe_view_session *app) {
     abbe_ui_text(DIM, "no light has reached a refractor");
     return;
   }
-  pair("reached refractors", "%.4g W", e->reached);
-  pair("laid on receivers", "%.2f %%", e->deposited / whole);
-  pair("reflected outside", "%.2f %%", e->reflected / whole);
-  pair("absorbed", "%.2f %%", e->absorbed / whole);
-  pair("trapped", "%.2f %%", e->trapped / whole);
-  pair("missed", "%.2f %%", e->missed / whole);
-  pair("imbalance", "%.1e", abbe_ledger_imbalance(e));
+  abbe_view_panel_pair("reached refractors", "%.4g W", e->reached);
+  abbe_view_panel_pair("laid on receivers", "%.2f %%", e->deposited / whole);
+  abbe_view_panel_pair("reflected outside", "%.2f %%", e->reflected / whole);
+  abbe_view_panel_pair("absorbed", "%.2f %%", e->absorbed / whole);
+  abbe_view_panel_pair("trapped", "%.2f %%", e->trapped / whole);
+  abbe_view_panel_pair("missed", "%.2f %%", e->missed / whole);
+  abbe_view_panel_pair("imbalance", "%.1e", abbe_ledger_imbalance(e));
 }
 
 /* Through which facets its light has come in. */
@@ -276,13 +283,14 @@ static void draw_feed(const abbe_view_session *app) {
     return;
   }
   if (feed->on_refractor)
-    pair("seen through", "%zu faces, at %.0f nm", feed->sight.count - 1, feed->sight.nm);
+    abbe_view_panel_pair("seen through", "%zu faces, at %.0f nm", feed->sight.count - 1,
+                         feed->sight.nm);
   if (feed->ray_count == 0) {
     abbe_ui_text(DIM,
                  "none of the photons through refractors and off mirrors is found to land here");
     return;
   }
-  pair("fed by", "%zu photons, through", feed->photons);
+  abbe_view_panel_pair("fed by", "%zu photons, through", feed->photons);
   for (size_t i = 0; i < feed->facet_count; i++) {
     const abbe_view_facet *f = &feed->facet[i];
     const char *name = "a facet";
@@ -290,35 +298,41 @@ static void draw_feed(const abbe_view_session *app) {
       if (o->object[k].scene_index == f->object) name = o->object[k].name;
     char label[ABBE_VIEW_NAME + 16];
     snprintf(label, sizeof label, "%.70s, %zu", name, i + 1);
-    pair(label, "%.0f %%, n %.2f %.2f %.2f", 100 * f->share, f->normal[0], f->normal[1],
-         f->normal[2]);
+    abbe_view_panel_pair(label, "%.0f %%, n %.2f %.2f %.2f", 100 * f->share, f->normal[0],
+                         f->normal[1], f->normal[2]);
   }
 }
 
 static void draw_pixel(const abbe_view_session *app) {
   const abbe_view_state *s = &app->state;
   const abbe_view_probe *p = &app->probe;
-  pair("pixel", "%zu, %zu", s->pixel[0], s->pixel[1]);
+  abbe_view_panel_pair("pixel", "%zu, %zu", s->pixel[0], s->pixel[1]);
   if (!p->coloured) {
     abbe_ui_text(DIM, "no light is seen there");
     return;
   }
-  pair("Y", "%.4g, %s", p->xyz[1], p->traced ? "traced" : "rendered");
-  pair("x, y", "%.4f, %.4f", p->xy[0], p->xy[1]);
-  pair("u', v'", "%.4f, %.4f", p->uv[0], p->uv[1]);
+  abbe_view_panel_pair("Y", "%.4g, %s", p->xyz[1], p->traced ? "traced" : "rendered");
+  abbe_view_panel_pair("x, y", "%.4f, %.4f", p->xy[0], p->xy[1]);
+  abbe_view_panel_pair("u', v'", "%.4f, %.4f", p->uv[0], p->uv[1]);
   if (p->dominant_nm > 0)
-    pair("dominant", "%.1f nm, purity %.0f %%", p->dominant_nm, 100 * p->purity);
+    abbe_view_panel_pair("dominant", "%.1f nm, purity %.0f %%", p->dominant_nm, 100 * p->purity);
   if (p->dominant_nm < 0)
-    pair("complementary", "%.1f nm, purity %.0f %%", -p->dominant_nm, 100 * p->purity);
+    abbe_view_panel_pair("complementary", "%.1f nm, purity %.0f %%", -p->dominant_nm,
+                         100 * p->purity);
   draw_feed(app);
   abbe_ui_gap();
   if (p->bands > 0)
-    abbe_view_chart_spectrum(p);
+    abbe_view_chart_spectrum(
+        &(abbe_view_chart_bands){.count = p->bands,
+                                 .nm = p->nm,
+                                 .value = p->radiance,
+                                 .error = p->stderr_of,
+                                 .unit = "W/(m\u00b2 sr nm), \u00b1 1 standard error"});
   else
     abbe_ui_text(DIM, s->refine.last == ABBE_VIEW_NONE || s->refine.last == ABBE_VIEW_TRACED
                           ? "the tracer is on its way to its spectrum"
                           : "no spectrum: nothing is traced (--last)");
-  abbe_view_chart_colours(p);
+  abbe_view_chart_colours(&p->xy, 1, NULL, 0);
 }
 
 void abbe_view_panel_draw(abbe_view_session *app, double now_s) {

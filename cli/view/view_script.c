@@ -277,7 +277,6 @@ static abbe_result do_key(script *s, abbe_error *error) {
 }
 
 /* ---- waiting and asserting ---- */
-
 static int stage_of(const char *name) {
   int stage = 0;
   while (stage < ABBE_VIEW_STAGE_COUNT &&
@@ -302,7 +301,7 @@ static bool has_come(script *s, const char *what) {
   if (strcmp(what, "changed") == 0) return v->state.refine.serial != s->copied;
   if (strcmp(what, "turntable") == 0) return v->turned && v->turn_frame == 0;
   if (strcmp(what, "feed") == 0) return abbe_view_session_feed(v) != NULL;
-  if (strcmp(what, "spectrum") == 0) return v->probe.bands > 0;
+  if (strcmp(what, "spectrum") == 0) return v->probe.bands > 0 || v->inspection.picked;
   const int stage = stage_of(what);
   return v->state.refine.stage != ABBE_VIEW_NONE && (int)v->stage >= stage &&
          (int)v->state.refine.stage >= stage && (stage != ABBE_VIEW_TRACED || v->passes > 0);
@@ -348,8 +347,12 @@ static abbe_result value_of(script *s, const char *name, char out[LONGEST], abbe
       }
     return fail(s, ABBE_NOT_FOUND, error, "'%.60s' was not remembered", name);
   }
-  if (abbe_view_session_value(&s->hidden.session, name, out, LONGEST)) return ABBE_OK;
-  char *command = strcmp(name, "command") == 0 ? abbe_view_keep_command(&s->hidden.session) : NULL;
+  abbe_view_session *v = &s->hidden.session;
+  const bool scene = v->inspection.pictures == NULL;
+  if (scene ? abbe_view_session_value(v, name, out, LONGEST)
+            : abbe_view_inspect_value(v, name, out, LONGEST))
+    return ABBE_OK;
+  char *command = scene && strcmp(name, "command") == 0 ? abbe_view_keep_command(v) : NULL;
   if (command != NULL) {
     snprintf(out, LONGEST, "%s", command);
     free(command);
@@ -409,8 +412,8 @@ static abbe_result do_say(script *s, abbe_error *error) {
 }
 
 static abbe_result do_shot(script *s, abbe_error *error) {
-  if (s->words < 2) return fail(s, ABBE_PARSE, error, "into which file?");
-  return shoot(s, s->word[1], error);
+  return s->words < 2 ? fail(s, ABBE_PARSE, error, "into which file?")
+                      : shoot(s, s->word[1], error);
 }
 
 static abbe_result do_size(script *s, abbe_error *error) {
@@ -433,8 +436,6 @@ static abbe_result do_copy(script *s, abbe_error *error) {
   free(data);
   return result;
 }
-
-/* ---- lines ---- */
 
 static const struct {
   const char *name;

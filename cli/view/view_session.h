@@ -5,6 +5,7 @@
 #ifndef ABBE_CLI_VIEW_VIEW_SESSION_H
 #define ABBE_CLI_VIEW_VIEW_SESSION_H
 
+#include "cli/view/inspect/inspect.h"
 #include "cli/view/picture/view_painter.h"
 #include "cli/view/picture/view_show.h"
 #include "cli/view/widgets/view_ui.h"
@@ -28,7 +29,25 @@ typedef struct abbe_view_desk {
   double waited_ms;   /* and how long it had waited for the next one to be wanted */
 } abbe_view_desk;
 
+/* Pictures that are looked at, and by which hand. */
+typedef struct abbe_view_inspection {
+  abbe_inspect *pictures; /* NULL: a scene is shown instead */
+  abbe_inspect_look look; /* as it is wished, of picture `at`; */
+  size_t at;
+  bool stale, whole;       /* it is not shown yet; no tile is missing */
+  size_t light[2];         /* of the lists of lights: that of the scene, and another; 0: none */
+  abbe_illuminant made[2]; /* and what they are */
+  int held;                /* 1: the pointer marks a region, 2: it moves the picture; 0: neither */
+  double pressed[2];       /* where that began */
+  bool picked;
+  size_t window[4];            /* the region, x0, y0, x1, y1 */
+  abbe_inspect_probe probe[2]; /* of the picture and of the other one */
+  unsigned char *pixels;       /* of the window, */
+  size_t size[2];              /* so many */
+} abbe_view_inspection;
+
 typedef struct abbe_view_session {
+  abbe_view_inspection inspection;
   abbe_view_state state;
   abbe_view_desk desk[ABBE_VIEW_WORKERS];
   const abbe_gl *gl;

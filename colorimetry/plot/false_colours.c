@@ -3,7 +3,6 @@
 #include "base/maths.h"
 #include "base/number.h"
 #include "colorimetry/image/picture_space.h"
-#include "colorimetry/plot/chart.h"
 #include "colorimetry/spectral_picture/spectral_channels.h"
 
 #include <assert.h>
@@ -125,8 +124,8 @@ static double round_up(double x) {
   return step[k] * power;
 }
 
-/* sorted: the finite values, ascending. */
-static void scale(const float *sorted, size_t count, bool is_error, abbe_chart_field *field) {
+void abbe_false_colours_scale(const float *sorted, size_t count, bool is_error,
+                              abbe_chart_field *field) {
   const double least = count > 0 ? (double)sorted[0] : 0,
                most = count > 0 ? (double)sorted[count - 1] : 0,
                nearly = count > 0 ? (double)sorted[(size_t)(0.999 * (double)(count - 1))] : 0;
@@ -161,7 +160,7 @@ abbe_result abbe_false_colours_draw(const char *path, const abbe_false_colours_d
     if (isfinite(value[p])) sorted[count++] = value[p];
   qsort(sorted, count, sizeof *sorted, abbe_order_ascending_floats);
   abbe_chart_field field = {.width = width, .height = height, .value = value, .label = d->label};
-  scale(sorted, count, d->is_error, &field);
+  abbe_false_colours_scale(sorted, count, d->is_error, &field);
   free(sorted);
   /* A logarithm has no 0: the scale's beginning stands for it. */
   for (size_t p = 0; p < pixels && field.log; p++)

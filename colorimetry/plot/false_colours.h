@@ -7,6 +7,7 @@
 #define ABBE_COLORIMETRY_PLOT_FALSE_COLOURS_H
 
 #include "colorimetry/image/image.h"
+#include "colorimetry/plot/chart.h"
 
 #include <stdbool.h>
 
@@ -22,6 +23,10 @@ bool abbe_false_colours_mean(const abbe_image *image, const char *layer);
  * that name, with what there is. */
 abbe_result abbe_false_colours_write(const char *path, const abbe_image *image, const char *layer,
                                      const char *name, abbe_error *error);
+
+/* That scale of sorted finite values, ascending: the field's min, max, map and log. */
+void abbe_false_colours_scale(const float *sorted, size_t count, bool is_error,
+                              abbe_chart_field *field);
 
 /* What is drawn: value[width * height], of errors by their logarithm. */
 typedef struct abbe_false_colours_desc {

@@ -37,6 +37,8 @@ static const struct named {
     {"view", "save-scene", WRITES},
     {"view", "ocio", READS},
     {"view", "volume", READS},
+    {"view", "lit-by", READS},
+    {"view", "illuminant", READS},
     {"trace", "", READS},
     {"trace", "output", WRITES},
     {"trace", "png", WRITES},

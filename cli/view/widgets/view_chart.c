@@ -13,6 +13,7 @@
 #define LINE 0xd6d9de
 #define REC709 0x9aa3b2
 #define ACESCG 0x6b7482
+#define OTHER 0xffb86b
 
 /* About the colour of light of one wavelength, as bright as a screen can. */
 static abbe_ui_colour hue_of(double nm) {
@@ -27,26 +28,40 @@ static abbe_ui_colour hue_of(double nm) {
   return byte[0] << 16 | byte[1] << 8 | byte[2];
 }
 
-void abbe_view_chart_spectrum(const abbe_view_probe *p) {
+static double height_of(double value, double most, double high) {
+  return isfinite(value) ? high * fmin(1, fmax(0, value) / most) : 0;
+}
+
+static void draw_spread(double x, double base, double value, double spread, double most,
+                        double high, abbe_ui_colour colour) {
+  if (!(spread > 0)) return;
+  abbe_ui_line(x, base - height_of(value - spread, most, high), x,
+               base - height_of(value + spread, most, high), colour, 1);
+}
+
+void abbe_view_chart_spectrum(const abbe_view_chart_bands *b) {
   const double width = abbe_ui_panel_width(), height = 120, foot = 18;
   double x, y, most = 0;
-  char text[64];
+  char text[96];
   if (!abbe_ui_place("spectrum", width, height, &x, &y)) return;
   const double base = y + height - foot, high = height - foot - 16;
-  for (size_t i = 0; i < p->bands; i++) most = fmax(most, p->radiance[i] + p->stderr_of[i]);
-  const double from = p->nm[0], to = p->nm[p->bands - 1];
-  const double step = p->bands > 1 ? width / (double)p->bands : width;
+  for (size_t i = 0; i < b->count; i++)
+    if (isfinite(b->value[i]))
+      most = fmax(most, b->value[i] + (isfinite(b->error[i]) ? b->error[i] : 0));
+  const double from = b->nm[0], to = b->nm[b->count - 1];
+  const double step = b->count > 1 ? width / (double)b->count : width;
+  const double between = step > 3 ? 0.5 : 0;
   abbe_ui_line(x, base, x + width, base, FRAME, 1);
-  if (!(most > 0) || !(to > from)) return;
-  for (size_t i = 0; i < p->bands; i++) {
+  if (!(most > 0) || !(to >= from)) return;
+  for (size_t i = 0; i < b->count; i++) {
     const double left = x + step * (double)i, middle = left + 0.5 * step;
-    const double top = base - high * fmax(0, p->radiance[i]) / most;
-    const double low = base - high * fmax(0, p->radiance[i] - p->stderr_of[i]) / most;
-    const double up = base - high * (p->radiance[i] + p->stderr_of[i]) / most;
-    abbe_ui_box(left + 0.5, top, left + step - 0.5, base, hue_of(p->nm[i]));
-    abbe_ui_line(middle, low, middle, up, LINE, 1);
+    abbe_ui_box(left + between, base - height_of(b->value[i], most, high), left + step - between,
+                base, hue_of(b->nm[i]));
+    if (b->deviation != NULL)
+      draw_spread(middle - 1, base, b->value[i], b->deviation[i], most, high, DIM);
+    draw_spread(middle, base, b->value[i], b->error[i], most, high, LINE);
   }
-  abbe_number_format(text, sizeof text, "%.3g W/(m\u00b2 sr nm), \u00b1 1 standard error", most);
+  abbe_number_format(text, sizeof text, "%.3g %.60s", most, b->unit);
   abbe_ui_label(x, y - 2, DIM, text);
   abbe_number_format(text, sizeof text, "%.0f", from);
   abbe_ui_label(x, base + 2, DIM, text);
@@ -80,7 +95,8 @@ static void gamut(const frame *f, abbe_rgb_space space, abbe_ui_colour colour) {
   for (int k = 0; k < 3; k++) side(f, &xy[2 * k], &xy[2 * ((k + 1) % 3)], colour);
 }
 
-static void draw_diagram(const frame *f, const abbe_view_probe *p) {
+static void draw_diagram(const frame *f, const double (*xy)[2], size_t count,
+                         const double (*cloud)[2], size_t cloud_count) {
   static const double white[2] = {0.31272, 0.32903};
   double at[2], a[2], b[2];
   for (int nm = 400; nm < 700; nm += 5) {
@@ -95,18 +111,25 @@ static void draw_diagram(const frame *f, const abbe_view_probe *p) {
   gamut(f, ABBE_RGB_SPACE_REC709, REC709);
   dot_of(f, white, at);
   abbe_ui_circle(at[0], at[1], 2, DIM, 1);
-  dot_of(f, p->xy, at);
-  abbe_ui_circle(at[0], at[1], 4, 0xffffff, 2);
+  for (size_t i = 0; i < cloud_count; i++) {
+    dot_of(f, cloud[i], at);
+    abbe_ui_circle(at[0], at[1], 1, LINE, 1);
+  }
+  for (size_t i = count; i-- > 0;) {
+    dot_of(f, xy[i], at);
+    abbe_ui_circle(at[0], at[1], 4, i == 0 ? 0xffffff : OTHER, 2);
+  }
 }
 
-void abbe_view_chart_colours(const abbe_view_probe *p) {
+void abbe_view_chart_colours(const double (*xy_of)[2], size_t count, const double (*cloud)[2],
+                             size_t cloud_count) {
   const double width = abbe_ui_panel_width(), half = 0.5 * width, high = half, foot = 20;
   double x, y;
   if (!abbe_ui_place("chromaticity", width, high + foot, &x, &y)) return;
   const frame xy = {x + 4, y + high - 4, (high - 10) / 0.86, false};
   const frame uv = {x + half + 6, y + high - 4, (high - 10) / 0.64, true};
-  draw_diagram(&xy, p);
-  draw_diagram(&uv, p);
+  draw_diagram(&xy, xy_of, count, cloud, cloud_count);
+  draw_diagram(&uv, xy_of, count, cloud, cloud_count);
   abbe_ui_label(x + half - 32, y + 2, DIM, "x, y");
   abbe_ui_label(x + width - 38, y + 2, DIM, "u', v'");
   abbe_ui_label(x, y + high + 2, REC709, "Rec.709");

@@ -3,11 +3,21 @@
 #ifndef ABBE_CLI_VIEW_WIDGETS_VIEW_CHART_H
 #define ABBE_CLI_VIEW_WIDGETS_VIEW_CHART_H
 
-#include "cli/view/picture/view_painter.h"
+#include <stddef.h>
+
+/* A spectrum, [count] each, ascending in nm: values, standard errors, standard deviations (or
+ * NULL). What is not finite is not drawn. */
+typedef struct abbe_view_chart_bands {
+  size_t count;
+  const double *nm, *value, *error, *deviation;
+  const char *unit;
+} abbe_view_chart_bands;
 
 /* Both take a place in the open panel. */
-void abbe_view_chart_spectrum(const abbe_view_probe *probe);
-/* CIE 1931 x, y and 1976 u', v', with the locus, Rec.709 and ACEScg. */
-void abbe_view_chart_colours(const abbe_view_probe *probe);
+void abbe_view_chart_spectrum(const abbe_view_chart_bands *bands);
+/* CIE 1931 x, y and 1976 u', v', with the locus, Rec.709 and ACEScg: points, the first one white,
+ * and small ones. */
+void abbe_view_chart_colours(const double (*xy)[2], size_t count, const double (*cloud)[2],
+                             size_t cloud_count);
 
 #endif

@@ -197,6 +197,33 @@ TEST(scripts_that_do_not_hold) {
   run_clears("rm a.txt");
 }
 
+/* A pixel of the window is that of the file: two for each of its, the first at the upper left. */
+TEST(pictures_are_looked_at) {
+  run_must(
+      "\"$abbe\" render \"$house\"/scenes/sphere.yaml --size 48x32 --bands 8 --photons 48 --map "
+      "64 -q -o bands.exr --png bands.png");
+  run_must(
+      "printf '%s\\n' 'wait rest' 'assert width = 48' 'assert bands = 8' 'assert infinite = 0' "
+      "'click 41,33' 'say Y x y' 'choose shown \"colour of the bands\"' 'say Y x y' 'wait rest' "
+      "'shot colour.png' 'key +' 'assert exposure = 0.5' 'wait rest' 'shot bright.png' 'choose "
+      "shown \"one band\"' 'slide wavelength 1' 'wait rest' 'assert wavelength = 755' 'drag 20,20 "
+      "60,40' 'assert pixels = 231' 'wheel 48,32 4' 'assert zoom > 4.8' 'drag 40,40 60,50 right' "
+      "'assert rate > 0' 'key v' 'assert note contains \"it has no\"' 'key b' 'wait rest' 'assert "
+      "picture = "
+      "bands.png' 'assert shown = colour' 'key v' 'wait rest' 'assert note = \"\"' > a.txt");
+  run_must("\"$abbe\" view bands.exr bands.png --size 436x64 --script a.txt > said");
+  /* as `pixel` says of the channels and of the bands */
+  run_must(
+      "\"$abbe\" pixel bands.exr 20,16 > pixel && awk '/^  XYZ/ { print $3 }' pixel > is && awk "
+      "'/^Y/ { printf \"%.6g\\n\", $2 }' said > said.Y && diff is said.Y");
+  run_must("! cmp -s colour.png bright.png");
+  run_fails("\"$abbe\" view bands.exr --script a.txt --lit-by moon", 1, "moon");
+  run_must("head -c 300 bands.exr > cut.exr");
+  run_fails("\"$abbe\" view bands.exr cut.exr --script a.txt", 1, "cut.exr");
+  run_fails("\"$abbe\" view bands.webp --script a.txt", 1, ".exr, .hdr, .pic and .png");
+  run_clears("rm *.exr *.png a.txt said said.Y is pixel");
+}
+
 TEST(without_a_display) {
   assert_true(
       run_refuses("env -u DISPLAY -u WAYLAND_DISPLAY " VIEW, 1, "--script leads the viewer"));
@@ -218,6 +245,9 @@ TEST(wrong_use) {
   assert_true(run_refuses(VIEW "--wavelengths few", 2, "--wavelengths"));
   assert_true(run_refuses(VIEW "--map 5000", 2, "--map"));
   assert_true(run_refuses(VIEW "--serve 65536", 2, "--serve"));
+  assert_true(run_refuses(VIEW "a.exr", 2, "leave out"));
+  assert_true(run_refuses("\"$abbe\" view a.exr --last moving", 2, "leave out --last"));
+  assert_true(run_refuses(VIEW "--observer 1964", 2, "pictures of bands"));
   assert_true(run_refuses(VIEW "--serve 0 --script a.txt", 2, "not both"));
 }
 

@@ -1,0 +1,317 @@
+#include "cli/view/inspect/inspect.h"
+
+#include "base/file.h"
+#include "colorimetry/image/exr.h"
+#include "colorimetry/image/png_file.h"
+#include "colorimetry/image/radiance_file.h"
+#include "colorimetry/image/rgb_encoding.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+static const size_t absent = (size_t)-1;
+
+/* ---- reading ---- */
+
+/* A path's ending without the part behind it. */
+static bool ends(const char *path, const char *ending) {
+  const size_t length = abbe_exr_file_length(path), n = strlen(ending);
+  return length >= n && strncasecmp(path + length - n, ending, n) == 0;
+}
+
+/* Numbers that are encoded for a screen become light. */
+static void decode(abbe_image *image) {
+  double curve[5];
+  abbe_rgb_encoding_srgb(image->xy, curve);
+  const size_t count = image->width * image->height * image->channels;
+  for (size_t i = 0; i < count; i++)
+    image->data[i] = (float)abbe_rgb_encoding_light(curve, (double)image->data[i]);
+  memset(image->curve, 0, sizeof image->curve);
+}
+
+static abbe_result read_image(const char *path, abbe_inspect_picture *p, abbe_error *error) {
+  if (ends(path, ".exr")) return abbe_exr_read(path, &p->image, error);
+  if (ends(path, ".hdr") || ends(path, ".pic")) return abbe_radiance_read(path, &p->image, error);
+  if (!ends(path, ".png"))
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%s: pictures that can be looked at are .exr, .hdr, .pic and .png", path);
+  const abbe_result result = abbe_png_read(path, &p->image, error);
+  p->encoded = result == ABBE_OK;
+  if (p->encoded) decode(&p->image);
+  return result;
+}
+
+/* ---- what is in it ---- */
+
+/* "w420nm" becomes "S0.420nm", where the picture has no other bands and each name differs in its
+ * number alone. */
+static abbe_result rename_bands(abbe_inspect_picture *p, abbe_error *error) {
+  abbe_spectral_unread unread;
+  abbe_spectral_channels_find_unread(&p->image, NULL, &unread);
+  const char *first = unread.first[ABBE_SPECTRAL_UNREAD_NAMED];
+  if (p->bands.count > 0 || unread.count[ABBE_SPECTRAL_UNREAD_NAMED] < 2) return ABBE_OK;
+  const size_t letters = strcspn(first, "0123456789");
+  char *before = strndup(first, letters);
+  abbe_result result = before != NULL ? ABBE_OK : ABBE_NO_MEMORY;
+  for (size_t c = 0; c < p->image.channels && result == ABBE_OK; c++) {
+    char name[64];
+    double nm;
+    const char *own = p->image.channel[c];
+    if (strncmp(own, before, letters) != 0) continue;
+    snprintf(name, sizeof name, "S0.%.40s", own + letters);
+    if (abbe_spectral_channel_parse(name, &nm) != ABBE_SPECTRAL_EMISSIVE) continue;
+    char *text = strdup(name);
+    if (text == NULL) result = ABBE_NO_MEMORY;
+    if (text == NULL) break;
+    free(p->image.channel[c]);
+    p->image.channel[c] = text;
+    p->renamed = true;
+  }
+  free(before);
+  if (result != ABBE_OK) return abbe_error_set(error, result, "%s: no memory", p->path);
+  return p->renamed ? abbe_spectral_channels_find(&p->image, NULL, p->path, &p->bands, error)
+                    : ABBE_OK;
+}
+
+/* One pass: what is not finite, and how great the rest is. */
+static void look_for_odd(abbe_inspect_picture *p) {
+  const abbe_image *image = &p->image;
+  float most = 65504; /* as abbe_relight_make */
+  for (size_t i = 0; i < image->width * image->height; i++) {
+    bool infinite = false, nan = false;
+    for (size_t c = 0; c < image->channels; c++) {
+      const float v = fabsf(image->data[i * image->channels + c]);
+      if (v <= most) continue;
+      infinite = infinite || isinf(v);
+      nan = nan || isnan(v);
+      if (isfinite(v)) most = v;
+    }
+    if ((infinite || nan) && p->odd.infinite + p->odd.nan == 0) {
+      p->odd_at[0] = i % image->width;
+      p->odd_at[1] = i / image->width;
+    }
+    p->odd.infinite += infinite;
+    p->odd.nan += nan && !infinite;
+  }
+  p->most = (double)most;
+}
+
+static void add(abbe_inspect_picture *p, abbe_inspect_kind kind, const char *name,
+                const size_t channel[3]) {
+  abbe_inspect_entry *e = &p->entry[p->count];
+  *e = (abbe_inspect_entry){.kind = kind};
+  for (int k = 0; k < 3; k++) e->channel[k] = channel != NULL ? channel[k] : absent;
+  p->name[p->count++] = name;
+}
+
+/* The other two of a channel R or X, in its layer. */
+static bool find_triple(const abbe_image *image, size_t first, size_t channel[3]) {
+  const char *own = image->channel[first];
+  const size_t length = strlen(own);
+  if (length > 1 && own[length - 2] != '.') return false;
+  const char last = own[length - 1];
+  if ((last != 'R' && last != 'X') || length > 250) return false;
+  channel[0] = first;
+  for (int k = 1; k < 3; k++) {
+    char name[256];
+    snprintf(name, sizeof name, "%.*s%c", (int)length - 1, own, (last == 'R' ? "RGB" : "XYZ")[k]);
+    channel[k] = abbe_image_find_channel(image, name);
+    if (channel[k] == absent) return false;
+  }
+  return true;
+}
+
+/* S1 to S3 of the band of channel S0. */
+static bool find_stokes(const abbe_image *image, size_t s0, size_t channel[4]) {
+  channel[0] = s0;
+  for (int k = 1; k < 4; k++) {
+    char name[64];
+    snprintf(name, sizeof name, "S%d%.60s", k, image->channel[s0] + 2);
+    channel[k] = abbe_image_find_channel(image, name);
+  }
+  return image->channel[s0][0] == 'S' && channel[1] != absent && channel[2] != absent;
+}
+
+static abbe_result list_entries(abbe_inspect_picture *p, abbe_error *error) {
+  const abbe_image *image = &p->image;
+  size_t channel[3], stokes[4];
+  p->entry = calloc(2 * image->channels + 4, sizeof *p->entry);
+  p->name = calloc(2 * image->channels + 4, sizeof *p->name);
+  if (p->entry == NULL || p->name == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its channels", p->path);
+  abbe_error why = {0};
+  for (int layered = 0; layered < 2; layered++) { /* those of no layer first */
+    for (size_t c = 0; c < image->channels; c++) {
+      const bool own = image->channel[c][0] == '\0' || image->channel[c][1] == '\0';
+      if (own == (layered == 1) || !find_triple(image, c, channel)) continue;
+      const bool xyz = strchr(image->channel[c] + strlen(image->channel[c]) - 1, 'X') != NULL;
+      if (abbe_picture_space_find(image, xyz, p->path, &p->space, &why) == ABBE_OK)
+        add(p, ABBE_INSPECT_COLOUR, own ? "colour" : image->channel[c], channel);
+      else
+        snprintf(p->note, sizeof p->note, "%s", why.text);
+    }
+    if (layered == 0 && p->bands.count >= 2)
+      add(p, ABBE_INSPECT_SPECTRUM, "colour of the bands", NULL);
+  }
+  if (p->bands.count > 0) add(p, ABBE_INSPECT_BAND, "one band", NULL);
+  if (p->bands.count > 0 && find_stokes(image, p->bands.channel[0], stokes)) {
+    add(p, ABBE_INSPECT_DEGREE, "degree of polarisation", NULL);
+    add(p, ABBE_INSPECT_ANGLE, "angle of polarisation", NULL);
+  }
+  for (size_t c = 0; c < image->channels; c++)
+    add(p, ABBE_INSPECT_CHANNEL, image->channel[c], (const size_t[3]){c, absent, absent});
+  return ABBE_OK;
+}
+
+static void free_picture(abbe_inspect_picture *p) {
+  abbe_inspect_tiles_free(p);
+  abbe_inspect_mix_free(&p->mix);
+  abbe_inspect_mix_free(&p->minus);
+  abbe_spectral_channels_free(&p->bands);
+  abbe_image_free(&p->image);
+  free(p->entry);
+  free(p->name);
+  *p = (abbe_inspect_picture){0};
+}
+
+abbe_result abbe_inspect_open(abbe_inspect *inspect, const char *path, abbe_error *error) {
+  if (inspect->count == ABBE_INSPECT_MOST_PICTURES)
+    return abbe_error_set(error, ABBE_OUT_OF_RANGE, "%s: at most %d pictures are looked at at once",
+                          path, ABBE_INSPECT_MOST_PICTURES);
+  abbe_inspect_picture *p = &inspect->picture[inspect->count];
+  *p = (abbe_inspect_picture){.path = path};
+  abbe_result result = read_image(path, p, error);
+  if (result == ABBE_OK)
+    result = abbe_spectral_channels_find(&p->image, NULL, path, &p->bands, error);
+  if (result == ABBE_OK) result = rename_bands(p, error);
+  if (result == ABBE_OK) result = list_entries(p, error);
+  if (result != ABBE_OK) {
+    free_picture(p);
+    return result;
+  }
+  look_for_odd(p);
+  if (inspect->count == 1) inspect->other = 1;
+  inspect->count++;
+  return ABBE_OK;
+}
+
+void abbe_inspect_free(abbe_inspect *inspect) {
+  for (size_t i = 0; i < inspect->count; i++) free_picture(&inspect->picture[i]);
+  *inspect = (abbe_inspect){0};
+}
+
+/* ---- weights ---- */
+
+bool abbe_inspect_is_colour(abbe_inspect_kind kind) {
+  return kind == ABBE_INSPECT_COLOUR || kind == ABBE_INSPECT_SPECTRUM;
+}
+
+/* The band that is nearest. */
+static size_t nearest(const abbe_spectral_channels *c, double nm) {
+  size_t best = 0;
+  for (size_t i = 1; i < c->count; i++)
+    if (fabs(c->lambda_nm[i] - nm) < fabs(c->lambda_nm[best] - nm)) best = i;
+  return c->channel[best];
+}
+
+/* XYZ as weights become those of ACEScg. */
+static void to_acescg(abbe_inspect_mix *mix, double factor) {
+  double matrix[9];
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
+  for (int k = 0; k < 9; k++) matrix[k] *= factor;
+  for (size_t i = 0; i < mix->count; i++)
+    abbe_rgb_space_apply(matrix, mix->weight[i], mix->weight[i]);
+}
+
+/* A light of 1 W/(m2 sr nm) at all wavelengths is Y = 1 where the light is not known, as `display`
+ * has it. */
+static abbe_result mix_bands(const abbe_inspect_picture *p, const abbe_inspect_look *look,
+                             abbe_inspect_mix *mix, abbe_error *error) {
+  const bool reflective = p->bands.kind == ABBE_SPECTRAL_REFLECTIVE;
+  abbe_spectral_view view = look->view;
+  if (!reflective && view.from == NULL) view.to = NULL;
+  const abbe_result result =
+      abbe_spectral_colour_weights(&p->bands, &view, p->path, mix->weight, error);
+  if (result != ABBE_OK) return result;
+  memcpy(mix->channel, p->bands.channel, mix->count * sizeof *mix->channel);
+  double even = 0;
+  for (size_t i = 0; i < mix->count; i++) even += mix->weight[i][1] / p->bands.unit.factor;
+  const bool absolute = !reflective && view.from == NULL;
+  mix->unit = !absolute ? 0 : p->renamed ? 0 : even;
+  to_acescg(mix, absolute ? 1 / even : 1);
+  return ABBE_OK;
+}
+
+static void mix_colour(const abbe_inspect_picture *p, const abbe_inspect_entry *entry,
+                       abbe_inspect_mix *mix) {
+  abbe_picture_space space = p->space;
+  const char *first = p->image.channel[entry->channel[0]];
+  abbe_picture_space_find(&p->image, strrchr(first, 'X') != NULL, p->path, &space, NULL);
+  memcpy(mix->channel, entry->channel, sizeof entry->channel);
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) mix->weight[i][k] = space.to_xyz[3 * k + i];
+  to_acescg(mix, 1);
+}
+
+abbe_result abbe_inspect_mix_make(const abbe_inspect_picture *p, const abbe_inspect_entry *entry,
+                                  const abbe_inspect_look *look, abbe_inspect_mix *out,
+                                  abbe_error *error) {
+  abbe_inspect_mix mix = {.kind = entry->kind, .count = 1};
+  if (entry->kind == ABBE_INSPECT_COLOUR) mix.count = 3;
+  if (entry->kind == ABBE_INSPECT_SPECTRUM) mix.count = p->bands.count;
+  mix.channel = calloc(mix.count + 4, sizeof *mix.channel);
+  mix.weight = calloc(mix.count + 4, sizeof *mix.weight);
+  if (mix.channel == NULL || mix.weight == NULL) {
+    abbe_inspect_mix_free(&mix);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its channels", p->path);
+  }
+  abbe_result result = ABBE_OK;
+  for (int k = 0; k < 3; k++) mix.weight[0][k] = 1;
+  if (entry->kind == ABBE_INSPECT_COLOUR)
+    mix_colour(p, entry, &mix);
+  else if (entry->kind == ABBE_INSPECT_SPECTRUM)
+    result = mix_bands(p, look, &mix, error);
+  else
+    mix.channel[0] = entry->kind == ABBE_INSPECT_CHANNEL ? entry->channel[0]
+                                                         : nearest(&p->bands, look->wavelength_nm);
+  if (entry->kind == ABBE_INSPECT_DEGREE || entry->kind == ABBE_INSPECT_ANGLE)
+    find_stokes(&p->image, mix.channel[0], mix.channel);
+  if (result == ABBE_OK)
+    *out = mix;
+  else
+    abbe_inspect_mix_free(&mix);
+  return result;
+}
+
+void abbe_inspect_mix_free(abbe_inspect_mix *mix) {
+  free(mix->channel);
+  free(mix->weight);
+  *mix = (abbe_inspect_mix){0};
+}
+
+static double polarised(const abbe_inspect_mix *mix, const float *pixel) {
+  double s[4];
+  for (int k = 0; k < 4; k++) s[k] = mix->channel[k] != absent ? (double)pixel[mix->channel[k]] : 0;
+  if (mix->kind == ABBE_INSPECT_ANGLE) return 0.5 * atan2(s[2], s[1]) * 180 / acos(-1);
+  return s[0] > 0 ? sqrt(s[1] * s[1] + s[2] * s[2] + s[3] * s[3]) / s[0] : 0;
+}
+
+void abbe_inspect_mix_at(const abbe_inspect_mix *mix, const abbe_inspect_picture *p, size_t x,
+                         size_t y, double out[3]) {
+  const float *pixel = p->image.data + (y * p->image.width + x) * p->image.channels;
+  if (mix->kind == ABBE_INSPECT_DEGREE || mix->kind == ABBE_INSPECT_ANGLE) {
+    out[0] = out[1] = out[2] = polarised(mix, pixel);
+    return;
+  }
+  const bool colour = abbe_inspect_is_colour(mix->kind);
+  out[0] = out[1] = out[2] = 0;
+  for (size_t i = 0; i < mix->count; i++) {
+    double v = (double)pixel[mix->channel[i]];
+    /* infinities of several signs make no colour */
+    if (colour && isinf(v)) v = copysign(p->most, v);
+    for (int k = 0; k < 3; k++) out[k] += mix->weight[i][k] * v;
+  }
+}

@@ -1,0 +1,141 @@
+#include "cli/view/inspect/inspect.h"
+
+#include "colorimetry/chromaticity.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* About the first pixel, so that nothing cancels. */
+static void add_pixel(const abbe_image *image, size_t x, size_t y, const float *first,
+                      abbe_inspect_probe *p) {
+  const float *v = image->data + (y * image->width + x) * image->channels;
+  p->pixels++;
+  for (size_t c = 0; c < image->channels; c++)
+    if (!isfinite(v[c])) {
+      p->odd++;
+      return;
+    }
+  for (size_t c = 0; c < image->channels; c++) {
+    const double d = (double)v[c] - (double)first[c];
+    p->mean[c] += d;
+    p->deviation[c] += d * d;
+  }
+}
+
+static const float *first_finite(const abbe_image *image, const size_t w[4]) {
+  for (size_t y = w[1]; y <= w[3]; y++)
+    for (size_t x = w[0]; x <= w[2]; x++) {
+      const float *v = image->data + (y * image->width + x) * image->channels;
+      size_t c = 0;
+      while (c < image->channels && isfinite(v[c])) c++;
+      if (c == image->channels) return v;
+    }
+  return NULL;
+}
+
+/* The error that the file states of one pixel. */
+static double stated_error(const abbe_image *image, const float *pixel, size_t channel) {
+  char name[300];
+  snprintf(name, sizeof name, "stderr.%.280s", image->channel[channel]);
+  const size_t at = abbe_image_find_channel(image, name);
+  return at != (size_t)-1 ? (double)pixel[at] : NAN;
+}
+
+static void take_channels(const abbe_image *image, abbe_inspect_probe *p) {
+  const size_t *w = p->window;
+  const float *first = first_finite(image, w);
+  if (first != NULL)
+    for (size_t y = w[1]; y <= w[3]; y++)
+      for (size_t x = w[0]; x <= w[2]; x++) add_pixel(image, x, y, first, p);
+  else
+    p->pixels = p->odd = (w[2] - w[0] + 1) * (w[3] - w[1] + 1);
+  const double n = (double)(p->pixels - p->odd);
+  for (size_t c = 0; c < p->channels; c++) {
+    const double mean = n > 0 ? p->mean[c] / n : NAN;
+    const double squares = n > 1 ? (p->deviation[c] - n * mean * mean) / (n - 1) : NAN;
+    p->deviation[c] = n > 1 ? sqrt(fmax(0, squares)) : NAN;
+    p->error[c] = n == 1 ? stated_error(image, first, c) : p->deviation[c] / sqrt(n);
+    p->mean[c] = first != NULL ? (double)first[c] + mean : NAN;
+  }
+}
+
+/* What is shown if that is a colour, else of the bands, else of R, G, B. */
+static const abbe_inspect_entry *colour_of(const abbe_inspect *s, const abbe_inspect_picture *p) {
+  const abbe_inspect_entry *best = NULL;
+  if (p == &s->picture[s->at] && abbe_inspect_is_colour(p->entry[s->look.entry].kind))
+    return &p->entry[s->look.entry];
+  for (size_t i = 0; i < p->count; i++) {
+    if (p->entry[i].kind == ABBE_INSPECT_SPECTRUM) return &p->entry[i];
+    if (best == NULL && p->entry[i].kind == ABBE_INSPECT_COLOUR) best = &p->entry[i];
+  }
+  return best;
+}
+
+static void take_cloud(const abbe_inspect_picture *p, const abbe_inspect_mix *mix,
+                       const double matrix[9], abbe_inspect_probe *out) {
+  const size_t *w = out->window;
+  size_t step = 1;
+  while (((w[2] - w[0]) / step + 1) * ((w[3] - w[1]) / step + 1) > ABBE_INSPECT_CLOUD) step++;
+  for (size_t y = w[1]; y <= w[3]; y += step)
+    for (size_t x = w[0]; x <= w[2]; x += step) {
+      double xyz[3];
+      abbe_inspect_mix_at(mix, p, x, y, xyz);
+      abbe_rgb_space_apply(matrix, xyz, xyz);
+      if (abbe_chromaticity_xy(xyz, out->cloud[out->cloud_count])) out->cloud_count++;
+    }
+}
+
+static abbe_result take_colour(const abbe_inspect *s, const abbe_inspect_picture *p,
+                               abbe_inspect_probe *out, abbe_error *error) {
+  static const double d65[2] = {0.3127, 0.3290};
+  const abbe_inspect_entry *entry = colour_of(s, p);
+  abbe_inspect_mix mix;
+  double matrix[9];
+  abbe_dominant dominant = {NAN, NAN, NAN};
+  if (entry == NULL || out->pixels == out->odd) return ABBE_OK;
+  const abbe_result result = abbe_inspect_mix_make(p, entry, &s->look, &mix, error);
+  if (result != ABBE_OK) return result;
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
+  for (size_t i = 0; i < mix.count; i++)
+    for (int k = 0; k < 3; k++) out->xyz[k] += mix.weight[i][k] * out->mean[mix.channel[i]];
+  abbe_rgb_space_apply(matrix, out->xyz, out->xyz);
+  out->unit = mix.unit;
+  out->coloured = abbe_chromaticity_xy(out->xyz, out->xy);
+  if (out->coloured) {
+    abbe_chromaticity_uv_of_xy(out->xy, out->uv);
+    abbe_chromaticity_dominant(out->xy, d65, s->look.view.observer, &dominant);
+  }
+  out->dominant_nm = isfinite(dominant.lambda_nm) ? dominant.lambda_nm : -dominant.complementary_nm;
+  out->purity = dominant.purity;
+  take_cloud(p, &mix, matrix, out);
+  abbe_inspect_mix_free(&mix);
+  return ABBE_OK;
+}
+
+abbe_result abbe_inspect_probe_make(const abbe_inspect *s, size_t at, const size_t window[4],
+                                    abbe_inspect_probe *out, abbe_error *error) {
+  const abbe_inspect_picture *p = &s->picture[at];
+  *out = (abbe_inspect_probe){.channels = p->image.channels};
+  for (int k = 0; k < 4; k++) {
+    const size_t most = (k % 2 == 0 ? p->image.width : p->image.height) - 1;
+    out->window[k] = window[k] < most ? window[k] : most;
+  }
+  out->mean = calloc(out->channels, sizeof *out->mean);
+  out->deviation = calloc(out->channels, sizeof *out->deviation);
+  out->error = calloc(out->channels, sizeof *out->error);
+  abbe_result result = ABBE_OK;
+  if (out->mean == NULL || out->deviation == NULL || out->error == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its channels", p->path);
+  if (result == ABBE_OK) take_channels(&p->image, out);
+  if (result == ABBE_OK) result = take_colour(s, p, out, error);
+  if (result != ABBE_OK) abbe_inspect_probe_free(out);
+  return result;
+}
+
+void abbe_inspect_probe_free(abbe_inspect_probe *p) {
+  free(p->mean);
+  free(p->deviation);
+  free(p->error);
+  *p = (abbe_inspect_probe){0};
+}
