@@ -239,9 +239,8 @@ static void crystal_roots(const side_medium *f, root all[4]) {
     all[i] = (root){.z = z[i], .fast = misses(f, z[i], true) <= misses(f, z[i], false)};
     for (int j = 0; j < i; j++)
       if (cabs(z[i] - z[j]) < 1e-4 && all[j].fast == all[i].fast) {
-        /* The quartic is the product of both sheets, so two roots on one leave the other by more
-         * than the root of rounding. Else both sheets are here: the pair takes one each, as fits
-         * better. */
+        /* Two roots on one sheet are further from the other than the root of rounding. Else both
+         * sheets are here: the pair takes one each, as fits better. */
         const bool fast = all[i].fast;
         const double kept = misses(f, z[j], fast) + misses(f, z[i], !fast),
                      swapped = misses(f, z[j], !fast) + misses(f, z[i], fast);
@@ -279,17 +278,15 @@ static void crystal_wave(const side_medium *f, const root *r, wave *w) {
   finish_wave(w);
 }
 
-/* Two waves of a clear medium carry no energy together. Their directions are known to rounding over
- * the distance of their wave vectors, and where these are one any two are right: the wave of less
- * flux is rid of what carries energy together with the other. */
+/* Two waves of a clear medium carry no energy together, but directions are known to rounding over
+ * the distance of wave vectors alone: the wave of less flux is rid of what does with the other. */
 static void part_pair(wave w[2]) {
   if (!w[0].travels || !w[1].travels) return;
   wave *more = &w[fabs(w[1].flux) > fabs(w[0].flux)], *less = more == w ? w + 1 : w;
   const number *e = more->e, *h = more->h, *other = less->e, *its = less->h;
   const number shared =
       conj(e[0]) * its[1] - conj(e[1]) * its[0] + other[0] * conj(h[1]) - other[1] * conj(h[0]);
-  const number part = shared / (2 * more->flux);
-  for (int k = 0; k < 3; k++) less->e[k] -= part * more->e[k];
+  for (int k = 0; k < 3; k++) less->e[k] -= shared / (2 * more->flux) * more->e[k];
   finish_wave(less);
 }
 

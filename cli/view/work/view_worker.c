@@ -1,7 +1,6 @@
 #include "cli/view/work/view_worker.h"
 
 #include "base/clock.h"
-#include "base/maths.h"
 #include "base/thread/watch.h"
 #include "cli/options/own_context.h"
 #include "cli/view/picture/view_feed.h"
@@ -26,13 +25,10 @@ const abbe_preset_point *abbe_view_settings_point(const abbe_preset_front *front
 }
 
 static double diagonal(const double min[3], const double max[3]) {
-  double across[3];
-  abbe_vector_subtract(max, min, across);
-  return abbe_vector_length(across);
+  return hypot(hypot(max[0] - min[0], max[1] - min[1]), max[2] - min[2]);
 }
 
-/* Presets are measured of refractors alone: in or beside a larger one a refractor has as many
- * photons and texels as alone, up to these. */
+/* A refractor in or beside a larger one has as many photons and texels as alone, up to these. */
 static void look_closer(const abbe_scene *scene, abbe_render_desc *desc) {
   enum { PHOTONS = 256, TEXELS = 1024 };
   double least = INFINITY, min[3], max[3];
