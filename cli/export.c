@@ -122,6 +122,8 @@ static abbe_result report_pov(const request *q, const abbe_scene *scene, abbe_er
     abbe_pov_glass g;
     if (scene->object[i].coatings != NULL && !q->json)
       fprintf(stderr, "%s: its coating is left out\n", scene->object[i].name);
+    if (scene->object[i].roughness != NULL && !q->json)
+      fprintf(stderr, "%s: its roughness is left out\n", scene->object[i].name);
     if (abbe_object_kind_of(&scene->object[i]) != ABBE_OBJECT_REFRACTOR || said(scene, i)) continue;
     result = abbe_pov_file_glass(m, abbe_scene_illuminant(scene), &g, error);
     if (result != ABBE_OK) break;

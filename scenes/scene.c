@@ -25,6 +25,7 @@ static void object_free(abbe_object *object) {
   free(object->own_material);
   abbe_medium_free(object->medium);
   abbe_coatings_free(object->coatings);
+  abbe_coatings_free(object->roughness);
   free(object->fixes);
 }
 

@@ -123,6 +123,7 @@ typedef struct abbe_object {
   abbe_material *own_material; /* refractor: that of its mesh's file, owned, or NULL */
   abbe_medium *medium;         /* refractor: what scatters in it, owned, or NULL */
   abbe_coatings *coatings;     /* refractor: films on it, owned, or NULL */
+  abbe_coatings *roughness;    /* refractor: its rough facets, owned; NULL: all are polished */
   double reflectance[3];       /* receiver: linear Rec.709, 0 to 1, as reflected_light.h lifts it;
                                   of a spectrum: its colour under D65, kept within that */
   abbe_spectrum *spectrum;     /* receiver: its measured reflectance, owned; NULL: Rec.709's */

@@ -3,7 +3,6 @@
 #include "base/maths.h"
 
 #include <math.h>
-#include <stdbool.h>
 
 static bool normalise(double a[3]) {
   const double length = sqrt(abbe_vector_dot(a, a));
@@ -75,4 +74,28 @@ double abbe_microfacets_sample(const abbe_microfacets *m, const double wo[3], co
   for (int k = 0; k < 3; k++) wi[k] = 2 * along * h[k] - wo[k];
   const double seen = abbe_microfacets_visible(m, wo);
   return seen > 0 ? visible_from_both(m, wi, wo) / seen : 0;
+}
+
+/* The area of all facets that w sees, by that of the surface. */
+static double seen_area(const abbe_microfacets *m, const double w[3]) {
+  const double x = m->x * w[0], y = m->y * w[1];
+  return 0.5 * (sqrt(w[2] * w[2] + x * x + y * y) + w[2]);
+}
+
+double abbe_microfacets_normals(const abbe_microfacets *m, const double wo[3], const double h[3]) {
+  const double along = abbe_vector_dot(wo, h), area = seen_area(m, wo);
+  return along > 0 && area > 0 ? abbe_microfacets_density(m, h) * along / area : 0;
+}
+
+double abbe_microfacets_escape(const abbe_microfacets *m, const double w[3], double height) {
+  return w[2] > 0 ? pow(height, hidden(m, w)) : 0;
+}
+
+bool abbe_microfacets_travel(const abbe_microfacets *m, const double w[3], double u,
+                             double *height) {
+  if (u >= 1 - abbe_microfacets_escape(m, w, *height)) return false;
+  const double others = hidden(m, w), power = w[2] > 0 ? -others : 1 + others;
+  /* along the surface it stays as high as it is */
+  if (isfinite(power)) *height = fmin(*height * pow(1 - u, 1 / power), 1);
+  return true;
 }

@@ -26,6 +26,8 @@ static void add_ledger(cJSON *root, const abbe_light_ledger *l, bool map) {
   cJSON_AddNumberToObject(energy, "trapped", l->trapped);
   cJSON_AddNumberToObject(energy, "lost", l->lost);
   cJSON_AddNumberToObject(energy, "scattered", l->scattered);
+  cJSON_AddNumberToObject(energy, "turned", l->turned);
+  cJSON_AddNumberToObject(energy, "frosted", l->frosted);
 }
 
 static abbe_result write_stats(const abbe_trace_request *q, const abbe_tracer *tracer,
@@ -126,6 +128,10 @@ void abbe_trace_summarise(const abbe_trace_request *q, const abbe_tracer *tracer
               whole * s.ledger.hidden);
     if (s.ledger.scattered > 0)
       fprintf(stderr, ", %.2f %% scattered on its way", whole * s.ledger.scattered);
+    if (s.ledger.turned > 0)
+      fprintf(stderr, ", %.2f %% scattered inside and followed on", whole * s.ledger.turned);
+    if (s.ledger.frosted > 0)
+      fprintf(stderr, ", %.2f %% of it met rough faces", whole * s.ledger.frosted);
     if (s.ledger.trapped > 0)
       fprintf(stderr, ", %.2f %% trapped, which is not modelled", whole * s.ledger.trapped);
   }

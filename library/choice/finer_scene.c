@@ -67,6 +67,7 @@ abbe_result abbe_finer_scene_cut(abbe_scene *scene, abbe_error *error) {
     if (abbe_object_kind_of(object) != ABBE_OBJECT_REFRACTOR) continue;
     result = quarter(&object->mesh, &finer, error);
     if (result == ABBE_OK) result = quarter_coatings(object->coatings, error);
+    if (result == ABBE_OK) result = quarter_coatings(object->roughness, error);
     abbe_mesh_free(result == ABBE_OK ? &object->mesh : &finer);
     if (result == ABBE_OK) object->mesh = finer;
   }

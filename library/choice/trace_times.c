@@ -202,6 +202,7 @@ static unsigned long long hash_coatings(unsigned long long h, const abbe_coating
       abbe_film_layer layer[ABBE_FILM_MOST_LAYERS] = {{0, 0, 0}};
       abbe_coating_at(&c->coating[i], 380 + 50.0 * k, layer, NULL);
       h = hash(h, layer, c->coating[i].count * sizeof *layer);
+      if (c->coating[i].alpha > 0) h = hash(h, &c->coating[i].alpha, sizeof c->coating[i].alpha);
     }
   return c != NULL && c->face != NULL ? hash(h, c->face, c->face_count) : h;
 }
@@ -224,6 +225,7 @@ static unsigned long long hash_object(unsigned long long h, const abbe_object *o
   }
   if (o->material != NULL && abbe_material_is_crystal(o->material)) h = hash_crystal(h, o);
   h = hash_coatings(h, o->coatings);
+  h = hash_coatings(h, o->roughness);
   if (!o->mirror) return h;
   h = hash(h, &o->mirror_reflectance, sizeof o->mirror_reflectance);
   if (abbe_brushing_is_rough(&o->brushing)) {

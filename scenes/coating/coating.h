@@ -1,4 +1,5 @@
-/* coating.h: thin films on an object that refracts, on all of it or on named facets.
+/* coating.h: thin films on an object that refracts, on all of it or on named facets, and how rough
+ * such facets are.
  *
  * A stack of isotropic layers, from outside in (spectral/film.h). It is the same film from either
  * side. Files of coatings are read here as well.
@@ -26,7 +27,8 @@ typedef struct abbe_coating_layer {
 typedef struct abbe_coating {
   size_t count;
   abbe_coating_layer layer[ABBE_FILM_MOST_LAYERS];
-  char *path;  /* the file that it is of, or NULL */
+  double alpha; /* of facets that are rough, which have no layers; 0: of a film */
+  char *path;   /* the file that it is of, or NULL */
   char *faces; /* names of facets, each ends with a zero, an empty one is behind the last; NULL: the
                   whole object */
 } abbe_coating;

@@ -97,6 +97,7 @@ static abbe_result survey_object(const survey *s, const abbe_object *o, double l
   if (kind == ABBE_OBJECT_REFRACTOR) result = add_glass(s, o->material, lambda_nm, error);
   if (kind == ABBE_OBJECT_MIRROR) survey_mirror(s, o);
   if (o->coatings != NULL) LOST(s, o->name, "its coating: its faces are bare");
+  if (o->roughness != NULL) LOST(s, o->name, "its roughness: its faces are polished");
   if (o->medium != NULL) LOST(s, o->name, "what scatters in it: its inside is clear");
   if (o->spectrum != NULL && !s->spectral)
     LOST(s, o->name, "its measured reflectance: its colour under D65 is written");

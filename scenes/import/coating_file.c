@@ -1,10 +1,11 @@
-/* The key 'coating' of an object: layers, or a coating of a file, on the object or on some facets.
- */
+/* The keys 'coating' and, of what refracts, 'roughness' of an object: layers, a coating of a file,
+ * or how rough it is, on the object or on some facets. */
 #include "scenes/import/scene_reading.h"
 
 #include "scenes/coating/coating.h"
 #include "scenes/geometry/transform.h"
 #include "scenes/import/scene_value.h"
+#include "spectral/microfacets.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -158,25 +159,55 @@ static abbe_result read_one(const abbe_object_reading *r, abbe_yaml_node node,
   return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, node, "a 'coating'", error) : result;
 }
 
-abbe_result abbe_object_read_coating(const abbe_object_reading *r, const abbe_material_table *table,
-                                     abbe_object *out, abbe_error *error) {
-  const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, "coating");
+/* A number, or {alpha: 0.3, faces: girdle}. */
+static abbe_result read_alpha(const abbe_object_reading *r, abbe_yaml_node node,
+                              const abbe_material_table *table, abbe_coatings *all,
+                              abbe_error *error) {
+  (void)table;
+  abbe_yaml_node alpha = node;
+  abbe_coating *out = &all->coating[all->count++];
+  abbe_result result = ABBE_OK;
+  const bool some = abbe_yaml_is_mapping(r->yaml, node);
+  if (some) result = abbe_yaml_require(r->yaml, node, "alpha", &alpha, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_number(r->yaml, alpha, "roughness", ABBE_MICROFACETS_LEAST, 1, &out->alpha,
+                              error);
+  if (result == ABBE_OK && some) result = read_faces(r, node, out, error);
+  return result == ABBE_OK && some ? abbe_yaml_check_keys(r->yaml, node, "a 'roughness'", error)
+                                   : result;
+}
+
+/* One entry under the key, or a list of them. */
+static abbe_result
+read_all(const abbe_object_reading *r, const char *key, const abbe_material_table *table,
+         abbe_result (*read)(const abbe_object_reading *, abbe_yaml_node,
+                             const abbe_material_table *, abbe_coatings *, abbe_error *),
+         abbe_coatings **out, abbe_error *error) {
+  const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, key);
   if (node.id == 0) return ABBE_OK;
-  if (out->material == NULL)
-    return abbe_yaml_fail(r->yaml, node, error,
-                          "'coating' is on what refracts; this object has no 'material'");
   const bool many = abbe_yaml_is_sequence(r->yaml, node);
   const size_t count = many ? abbe_yaml_count(r->yaml, node) : 1;
   if (count == 0 || count > ABBE_COATINGS_MOST)
-    return abbe_yaml_fail(r->yaml, node, error, "an object has 1 to %d coatings, not %zu",
+    return abbe_yaml_fail(r->yaml, node, error, "'%s' has 1 to %d entries, not %zu", key,
                           ABBE_COATINGS_MOST, count);
-  out->coatings = calloc(1, sizeof *out->coatings);
-  if (out->coatings == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for coatings");
+  *out = calloc(1, sizeof **out);
+  if (*out == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for coatings");
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < count && result == ABBE_OK; i++)
-    result =
-        read_one(r, many ? abbe_yaml_item(r->yaml, node, i) : node, table, out->coatings, error);
+    result = read(r, many ? abbe_yaml_item(r->yaml, node, i) : node, table, *out, error);
   return result;
+}
+
+abbe_result abbe_object_read_coating(const abbe_object_reading *r, const abbe_material_table *table,
+                                     abbe_object *out, abbe_error *error) {
+  const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, "coating");
+  if (node.id != 0 && out->material == NULL)
+    return abbe_yaml_fail(r->yaml, node, error,
+                          "'coating' is on what refracts; this object has no 'material'");
+  const abbe_result result = read_all(r, "coating", table, read_one, &out->coatings, error);
+  return result == ABBE_OK && out->material != NULL
+             ? read_all(r, "roughness", table, read_alpha, &out->roughness, error)
+             : result;
 }
 
 /* --- which face has which --- */
@@ -224,22 +255,21 @@ static void list_names(const abbe_object_reading *r, char *out, size_t size) {
 }
 
 /* Puts the number on the faces of that name; returns how many there are. */
-static size_t put(const abbe_object_reading *r, const abbe_object *object, const char *name,
-                  uint8_t number) {
+static size_t put(const abbe_object_reading *r, const abbe_object *object, abbe_coatings *c,
+                  const char *name, uint8_t number) {
   size_t found = 0;
   for (size_t f = 0; f < object->mesh.face_count; f++) {
     double n[3];
     own_normal(r, &object->mesh, f, n);
     if (strcasecmp(name, side_of(n)) != 0 && strcasecmp(name, facet_of(r, n)) != 0) continue;
-    object->coatings->face[f] = number;
+    c->face[f] = number;
     found++;
   }
   return found;
 }
 
-abbe_result abbe_object_settle_coating(const abbe_object_reading *r, abbe_object *object,
-                                       abbe_error *error) {
-  abbe_coatings *c = object->coatings;
+static abbe_result settle(const abbe_object_reading *r, const abbe_object *object, const char *key,
+                          abbe_coatings *c, abbe_error *error) {
   char names[400];
   bool somewhere = false;
   for (size_t i = 0; c != NULL && i < c->count; i++)
@@ -253,12 +283,18 @@ abbe_result abbe_object_settle_coating(const abbe_object_reading *r, abbe_object
     const char *name = c->coating[i].faces;
     if (name == NULL) memset(c->face, number, object->mesh.face_count);
     for (; name != NULL && *name != '\0'; name += strlen(name) + 1) {
-      if (put(r, object, name, number) > 0) continue;
+      if (put(r, object, c, name, number) > 0) continue;
       list_names(r, names, sizeof names);
-      return abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, r->node, "coating"), error,
+      return abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, r->node, key), error,
                             "'%s' has no facet '%s'; facets are named %s", object->name, name,
                             names);
     }
   }
   return ABBE_OK;
+}
+
+abbe_result abbe_object_settle_coating(const abbe_object_reading *r, abbe_object *object,
+                                       abbe_error *error) {
+  const abbe_result result = settle(r, object, "coating", object->coatings, error);
+  return result == ABBE_OK ? settle(r, object, "roughness", object->roughness, error) : result;
 }

@@ -240,19 +240,15 @@ static abbe_result read_mirror(const abbe_object_reading *r, abbe_yaml_node node
   return abbe_scene_value_locate(r->yaml, node, ABBE_UNSUPPORTED, error);
 }
 
-/* No medium is known for crystals' two waves; what does not refract has no inside. */
+/* What does not refract has no inside. */
 static abbe_result read_medium(const abbe_object_reading *r, abbe_object *out, abbe_error *error) {
   const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, "medium");
+  abbe_yaml_get(r->yaml, r->node, "clouds"); /* read where the object is placed */
   if (node.id == 0) return ABBE_OK;
   if (out->material == NULL)
     return abbe_yaml_fail(r->yaml, node, error,
                           "'medium' is what scatters inside of an object that refracts; this one "
                           "has no 'material' (the air's 'medium' stands beside 'objects')");
-  if (abbe_material_is_crystal(out->material))
-    return abbe_yaml_fail(r->yaml, node, error,
-                          "the material '%s' is a crystal, in which scattering is not modelled: "
-                          "leave the 'medium' out, or take a material with one index",
-                          out->material->name);
   return abbe_medium_file_read(r->yaml, r->node, false, &out->medium, error);
 }
 
@@ -299,13 +295,13 @@ static abbe_result read_brushing(const abbe_object_reading *r, abbe_object *out,
                                  abbe_error *error) {
   const abbe_yaml_node rough = abbe_yaml_get(r->yaml, r->node, "roughness");
   const abbe_yaml_node brushed = abbe_yaml_get(r->yaml, r->node, "brushed");
-  if (rough.id == 0 && brushed.id == 0) return ABBE_OK;
+  const bool refracts = out->material != NULL; /* its roughness is read with its coatings */
+  if ((rough.id == 0 || refracts) && brushed.id == 0) return ABBE_OK;
   if (!out->mirror)
-    return abbe_yaml_fail(r->yaml, rough.id ? rough : brushed, error,
-                          "'%s' is of a mirror; %s: leave it out",
-                          rough.id ? "roughness" : "brushed",
-                          out->material != NULL ? "the surfaces of what refracts are smooth here"
-                                                : "what receives light scatters it evenly");
+    return abbe_yaml_fail(
+        r->yaml, rough.id && !refracts ? rough : brushed, error,
+        "'%s' is of a mirror; %s: leave it out", rough.id && !refracts ? "roughness" : "brushed",
+        refracts ? "what refracts has no grooves here" : "what receives light scatters it evenly");
   if (rough.id == 0)
     return abbe_yaml_fail(r->yaml, brushed, error,
                           "'brushed' says which way grooves run; a 'roughness: [along, across]' "
@@ -423,11 +419,15 @@ static abbe_result read_solid(const abbe_object_reading *r, abbe_object_surface 
 static abbe_result place(const abbe_object_reading *r, const abbe_object_surface *surface,
                          abbe_object *out, size_t room, size_t *count, abbe_error *error) {
   const abbe_result result = abbe_object_place(surface, out, room, count, error);
-  if (result == ABBE_OK && *count > 1 && out->coatings != NULL)
+  if (result == ABBE_OK && *count > 1 && (out->coatings != NULL || out->roughness != NULL))
     return abbe_yaml_fail(r->yaml, r->node, error,
-                          "parts of '%s' cross, and films on such a mesh are not modelled",
+                          "parts of '%s' cross, and films or rough facets on such a mesh are not "
+                          "modelled",
                           out->name);
-  if (result == ABBE_OK) return abbe_object_settle_coating(r, out, error);
+  if (result == ABBE_OK) {
+    const abbe_result settled = abbe_object_settle_coating(r, out, error);
+    return settled == ABBE_OK ? abbe_object_read_clouds(r, out, room, count, error) : settled;
+  }
   char sentence[900];
   snprintf(sentence, sizeof sentence, "%.890s", error ? error->text : "");
   abbe_error_set(error, result, "object '%.60s': %s", out->name, sentence);

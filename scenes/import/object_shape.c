@@ -317,7 +317,9 @@ static abbe_result stretch(const cut_reading *q, abbe_cut *cut, abbe_cut_polyhed
 
 /* Names of its facets, for what is said of some of them. */
 static abbe_result name_facets(abbe_object_reading *r, const abbe_cut *cut, abbe_error *error) {
-  if (abbe_yaml_get(r->yaml, r->node, "coating").id == 0) return ABBE_OK;
+  if (abbe_yaml_get(r->yaml, r->node, "coating").id == 0 &&
+      abbe_yaml_get(r->yaml, r->node, "roughness").id == 0)
+    return ABBE_OK;
   r->facet = calloc(cut->facet_count + 1, sizeof *r->facet);
   if (r->facet == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for facets");
   for (size_t i = 0; i < cut->facet_count; i++) {

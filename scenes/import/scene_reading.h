@@ -51,7 +51,7 @@ typedef struct abbe_object_reading {
   double radius;             /* a sphere's */
   abbe_mesh_normals normals; /* a mesh's */
   double matrix[16];         /* to world */
-  abbe_named_facet *facet;   /* [facet_count] of a cut that is coated; owned */
+  abbe_named_facet *facet;   /* [facet_count] of a cut that is coated or rough; owned */
   size_t facet_count;
 } abbe_object_reading;
 
@@ -60,12 +60,18 @@ typedef struct abbe_object_reading {
 abbe_result abbe_object_read_axes(const abbe_object_reading *reading, abbe_object *object,
                                   abbe_error *error);
 
-/* `coating`, and once the object is placed which of its faces have which. */
+/* `coating` and the `roughness` of what refracts, and once the object is placed which of its faces
+ * have which. */
 abbe_result abbe_object_read_coating(const abbe_object_reading *reading,
                                      const abbe_material_table *table, abbe_object *object,
                                      abbe_error *error);
 abbe_result abbe_object_settle_coating(const abbe_object_reading *reading, abbe_object *object,
                                        abbe_error *error);
+
+/* `clouds` of the object that is placed at out[0], as further objects behind it, *count in all and
+ * fewer than `room`. */
+abbe_result abbe_object_read_clouds(const abbe_object_reading *reading, abbe_object *out,
+                                    size_t room, size_t *count, abbe_error *error);
 
 /* The surface under `shape` or `mesh`, in its own coordinates, and its form, radius and normals. */
 abbe_result abbe_object_read_surface(abbe_object_reading *reading, abbe_object *object,

@@ -113,9 +113,11 @@ static abbe_result read_medium(abbe_yaml *yaml, abbe_yaml_node node, bool air, a
                           "'medium' wants a mapping, such as {scattering: 0.3, g: 0.5%s}",
                           air ? ", box: [[-1, -1, 0], [1, 1, 2]]" : "");
   abbe_result result = read_coefficient(yaml, node, "scattering", &out->scattering, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, node, "g", -ABBE_MEDIUM_MOST_G, ABBE_MEDIUM_MOST_G, &out->g,
-                                  error);
+  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "g", -1, 1, &out->g, error);
+  if (result == ABBE_OK && fabs(out->g) >= 1)
+    result = abbe_yaml_fail(yaml, abbe_yaml_get(yaml, node, "g"), error,
+                            "'g: %g' must lie between -1 and 1; at these nothing would be turned",
+                            out->g);
   if (result == ABBE_OK && !air) result = refuse_inside(yaml, node, error);
   if (result == ABBE_OK && air)
     result = read_coefficient(yaml, node, "absorption", &out->absorption, error);

@@ -1,8 +1,7 @@
 /* medium.h: what scatters and absorbs light along its path: mist, or what is afloat in water.
  *
  * Homogeneous: coefficients by wavelength and a phase function after Henyey and Greenstein,
- * alike everywhere in a region. Light is scattered once: what is scattered goes to the camera or
- * is lost. */
+ * alike everywhere in a region. How often light is scattered is for the tracer and the renderer. */
 #ifndef ABBE_SCENES_MEDIUM_MEDIUM_H
 #define ABBE_SCENES_MEDIUM_MEDIUM_H
 
@@ -11,9 +10,6 @@
 #include "spectral/spectrum.h"
 
 #include <stdbool.h>
-
-/* The largest mean cosine of a phase function, forwards or backwards. */
-#define ABBE_MEDIUM_MOST_G 0.99
 
 typedef struct abbe_medium {
   abbe_spectrum *scattering; /* 1/m, natural; owned; NULL: none */

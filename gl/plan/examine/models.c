@@ -119,9 +119,22 @@ static void note_shafts(const abbe_scene *scene, abbe_plan *plan) {
                   scene->object[plan->refractor_object[first]].name, more);
 }
 
-static bool some_refractor_scatters(const abbe_scene *scene) {
+/* Whether there are refractors that scatter; says how often they do. */
+static bool note_scattering(const abbe_scene *scene, abbe_plan *plan) {
+  const double middle_nm = 0.5 * (plan->desc.min_nm + plan->desc.max_nm);
   bool some = false;
-  for (size_t i = 0; i < scene->object_count; i++) some = some || scene->object[i].medium != NULL;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *o = &scene->object[i];
+    double size[3];
+    if (o->medium == NULL) continue;
+    some = true;
+    abbe_vector_subtract(o->max, o->min, size);
+    const double across = abbe_vector_length(size);
+    abbe_plan_note(plan,
+                   "%s: light is scattered %.2g times on %.3g m, from corner to corner of it; once "
+                   "is drawn, and 'abbe trace' follows all",
+                   o->name, across * abbe_medium_scattering(o->medium, middle_nm), across);
+  }
   return some;
 }
 
@@ -135,7 +148,7 @@ void abbe_haze_model_note(const abbe_scene *scene, abbe_plan *plan) {
     abbe_plan_note(plan,
                    "light in media is seen by bent rays in %d of them; %zu more only take of it",
                    ABBE_PLAN_MOST_SHAFTS, plan->unseen_media);
-  if (!plan->multi_refractor_paths && some_refractor_scatters(scene))
+  if (note_scattering(scene, plan) && !plan->multi_refractor_paths)
     abbe_plan_note(plan, "media in refractors only take of light, where it is not followed from "
                          "interface to interface");
   if (plan->surrounded)

@@ -414,12 +414,35 @@ static void note_polarisation(const abbe_scene *scene, abbe_plan *plan) {
   }
 }
 
+/* What of its surface is rough, and how much. */
+static void note_roughness(const abbe_object *o, abbe_plan *plan) {
+  double all = 0, rough = 0, least = INFINITY, most = 0;
+  if (o->roughness == NULL) return;
+  for (size_t f = 0; f < o->mesh.face_count; f++) {
+    const uint32_t *corner = o->mesh.face[f];
+    const abbe_coating *c = abbe_coatings_on(o->roughness, f);
+    double n[3];
+    abbe_vector_triangle(o->mesh.position[corner[0]], o->mesh.position[corner[1]],
+                         o->mesh.position[corner[2]], n);
+    all += abbe_vector_length(n);
+    if (c == NULL) continue;
+    rough += abbe_vector_length(n);
+    least = fmin(least, c->alpha);
+    most = fmax(most, c->alpha);
+  }
+  abbe_plan_note(plan,
+                 "%s: %.3g %% of its surface is rough, alpha %.3g to %.3g; it is drawn polished, "
+                 "and 'abbe trace' follows light from facet to facet of it",
+                 o->name, 100 * rough / all, least, most);
+}
+
 void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan) {
   note_volume(scene, plan);
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *o = &scene->object[i];
     for (size_t k = 0; o->coatings != NULL && k < o->coatings->count; k++)
       note_film(o, &o->coatings->coating[k], plan);
+    note_roughness(o, plan);
   }
   for (size_t i = 0; i < scene->object_count; i++)
     note_pane(&scene->object[i], (plan->desc.min_nm + plan->desc.max_nm) / 2, plan);

@@ -109,6 +109,34 @@ TEST(facets_are_coated_by_name) {
   assert_int_equal(abbe_scene_file_count(&scene), 4 + 1 + 6 + 1);
 }
 
+/* How rough facets are, by the same names. */
+TEST(facets_are_rough_by_name) {
+  static const char box[] = "shape: box, size: [0.1, 0.1, 0.1], material: n-bk7, roughness: ";
+  static const struct {
+    const char *rest, *part;
+  } rows[] = {
+      {"0", "'roughness: 0'"},
+      {"1.5", "'roughness: 1.5'"},
+      {"{alpha: 0.0005}", "'roughness: 0.0005'"},
+      {"{faces: table}", "alpha"},
+      {"{alpha: 0.3, faces: [culet]}", "has no facet 'culet'; facets are named table"},
+      {"[]", "1 to 16 entries, not 0"},
+      {"0.3, brushed: {along: [1, 0, 0]}", "what refracts has no grooves here"},
+  };
+  FILLED(folder, f, make_folder(&f));
+  MADE(abbe_scene, scene,
+       parse(&f, printed("%s[0.2, {alpha: 0.3, faces: girdle}]", box), &scene, &error));
+  const abbe_object *o = &scene.object[1];
+  double rough = 0;
+  for (size_t i = 0; i < o->mesh.face_count; i++) rough += abbe_coatings_on(o->roughness, i)->alpha;
+  assert_near(rough, 4 * 0.2 + 8 * 0.3, 1e-12);
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    abbe_scene none;
+    REFUSED(ABBE_SCHEMA, rows[i].part,
+            parse(&f, printed("%s%s", box, rows[i].rest), &none, &error));
+  }
+}
+
 TEST(coatings_that_cannot_be_are_refused) {
   static const struct {
     abbe_result code;

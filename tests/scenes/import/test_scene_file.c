@@ -330,9 +330,7 @@ TEST(bad_scenes_are_explained) {
       {"mirror_and_material", ABBE_SCHEMA, "this one has more than one"},
       {"mirror_and_reflectance", ABBE_SCHEMA, "this one has more than one"},
       {"mirror_repaired", ABBE_SCHEMA, "'repair' is for the mesh of a file that refracts"},
-      {"roughness_of_glass", ABBE_SCHEMA,
-       ":20: 'roughness' is of a mirror; the surfaces of what refracts are smooth here: leave it "
-       "out"},
+      {"roughness_of_glass", ABBE_SCHEMA, ":20: 'roughness: 5e-4' is not in the range from 0.001"},
       {"roughness_of_a_floor", ABBE_SCHEMA, "what receives light scatters it evenly"},
       {"roughness_too_small", ABBE_SCHEMA, "'roughness' is 0, of a smooth mirror, or from 0.001"},
       {"roughness_above_one", ABBE_SCHEMA, "'roughness"},

@@ -67,8 +67,18 @@ TEST(bad_insides_are_refused) {
        "no 'material'"},
       {"- {name: a, shape: sphere, radius: 0.08, mirror: 1, medium: {scattering: 7}}\n",
        "no 'material'"},
-      {"- {name: a, shape: sphere, radius: 0.08, material: calcite, medium: {scattering: 7}}\n",
-       "crystal"},
+      {"- {name: a, shape: sphere, radius: 0.08, material: calcite, medium: {scattering: 7, g: "
+       "-1}}\n",
+       "'g: -1'"},
+      {"- {name: a, shape: sphere, radius: 0.08, material: calcite, clouds: [{centre: [0, 0, "
+       "0.04], "
+       "radius: 0.05, medium: {scattering: 7}}]}\n",
+       "the cloud reaches out of 'a'"},
+      {"- {name: a, shape: sphere, radius: 0.08, material: calcite, clouds: [{radius: 0.05, size: "
+       "[1, 1, 1]}]}\n",
+       "a 'radius' or a 'size'"},
+      {"- {name: a, shape: sphere, radius: 0.08, reflectance: 1, clouds: [{radius: 0.05}]}\n",
+       "no 'material'"},
       {"- {name: a, shape: sphere, radius: 0.08, material: n-bk7, medium: {scattering: 7, "
        "absorption: 1}}\n",
        "its material's"},

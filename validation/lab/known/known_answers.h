@@ -30,6 +30,7 @@
   X(film, "thin films on crown, diamond, topaz and in air: what they reflect and pass")            \
   X(crystal, "calcite: the angle between its rays, their indices, shares and doubled image")       \
   X(rainbow, "primary and secondary rainbows of water")                                            \
+  X(rough, "rough faces of glass: what their first facet reflects and passes, and smooth ones")    \
   X(pane, "what slabs, of calcite too, reflect and pass with all inner reflections")               \
   X(absorption, "Beer-Lambert: what absorbing slabs let pass")                                     \
   X(furnace, "a white furnace: glass in the same light from everywhere cannot be seen")            \

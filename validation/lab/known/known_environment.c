@@ -147,6 +147,23 @@ static const room rooms[] = {
     {"cut calcite",
      "- {name: gem, shape: gem, sides: 6, girdle: 0.04, table: 0.024, crown: 0.013,\n"
      "   pavilion: 0.03, material: calcite, axis: [1, 0.4, 0.7]}\n"},
+    {"frosted ball of n-bk7",
+     "- {name: ball, shape: sphere, radius: 0.04, material: n-bk7, roughness: 1}\n"},
+    {"cut diamond, partly frosted",
+     "- {name: gem, shape: gem, sides: 6, girdle: 0.04, table: 0.024, crown: 0.013,\n"
+     "   pavilion: 0.03, material: diamond, roughness: {alpha: 0.3, faces: [table, pavilion]}}\n"},
+    {"frosted cut calcite",
+     "- {name: gem, shape: gem, sides: 6, girdle: 0.04, table: 0.024, crown: 0.013,\n"
+     "   pavilion: 0.03, material: calcite, axis: [1, 0.4, 0.7], roughness: 0.5}\n"},
+    {"hazy ball of n-bk7",
+     "- {name: ball, shape: sphere, radius: 0.04, material: n-bk7, medium: {scattering: 60, g: "
+     "0.5}}\n"},
+    {"hazy cut calcite with a cloud and a bubble",
+     "- {name: gem, shape: gem, sides: 6, girdle: 0.04, table: 0.024, crown: 0.013,\n"
+     "   pavilion: 0.03, material: calcite, axis: [1, 0.4, 0.7], medium: {scattering: 60},\n"
+     "   clouds: [{radius: 0.006, medium: {scattering: 400, g: 0.8}}]}\n"
+     "- {name: bubble, shape: sphere, radius: 0.004, material: air,\n"
+     "   transform: [{translate: [0.014, 0, 0]}]}\n"},
 };
 
 static const char furnace_reason[] =

@@ -108,6 +108,10 @@ static abbe_result value_so_far(const abbe_tracer *tracer, const abbe_known_sett
   abbe_tracer_statistics(tracer, &statistics);
   *value = statistics.ledger.reached;
   if (s->channel == NULL) return ABBE_OK;
+  if (strcmp(s->channel, "turned") == 0) {
+    *value = statistics.ledger.turned / statistics.ledger.reached;
+    return ABBE_OK;
+  }
   abbe_image picture = {0};
   abbe_result result = abbe_tracer_picture(tracer, &picture, error);
   if (result != ABBE_OK) return result;
@@ -143,6 +147,7 @@ abbe_result abbe_known_add_setting(abbe_known_run *run, const abbe_known_setting
   abbe_tracer *tracer = NULL;
   abbe_trace_desc desc = {
       .no_map = true, .space = ABBE_RGB_SPACE_XYZ, .width = setting->side, .height = setting->side};
+  desc.physics.once = setting->once;
   const size_t passes = abbe_known_passes(run, setting->samples, &desc);
   double(*sum)[3] = calloc(passes, sizeof *sum), before = 0, mean = 0;
   abbe_result result = sum != NULL ? abbe_tracer_make(scene, &desc, &tracer, error)

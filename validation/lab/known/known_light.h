@@ -40,7 +40,9 @@ typedef struct abbe_known_setting {
   double useful; /* as in abbe_known_answer */
   uint64_t samples;
   size_t side;         /* pixels of the picture */
-  const char *channel; /* whose mean over the picture is known; NULL: the flux that was met, W */
+  bool once;           /* a medium scatters light once (physics.h) */
+  const char *channel; /* whose mean over the picture is known; NULL: the flux that was met, W;
+                          "turned": the share of it that refractors' haze has scattered */
   double (*weight)(double x, double y); /* weight of a pixel whose middle lies there, the picture
                                            reaching from -1 to 1 both ways, y up; NULL: 1 */
 } abbe_known_setting;

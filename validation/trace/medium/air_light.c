@@ -130,26 +130,13 @@ float abbe_air_light_lamp(const abbe_air_ray *r, size_t index, const float u[3],
 
 /* ---- surroundings ---- */
 
-/* A direction about d by the phase function of the air. */
-static void turn(const abbe_haze *h, const float d[3], float u, float v, float out[3]) {
-  const double g = (double)h->g[abbe_haze_row(h, -1)], w = (double)u;
-  const double s = (1 - g * g) / (1 - g + 2 * g * w);
-  const double turned = fabs(g) < 1e-6 ? 2 * w - 1 : (1 + g * g - s * s) / (2 * g);
-  const float cosine = fminf(fmaxf((float)turned, -1), 1);
-  const float sine = sqrtf(1 - cosine * cosine), angle = 6.28318531f * v;
-  float x[3], y[3];
-  abbe_geometry_across(d, x, y);
-  for (int k = 0; k < 3; k++)
-    out[k] = cosine * d[k] + sine * (cosf(angle) * x[k] + sinf(angle) * y[k]);
-}
-
 void abbe_air_light_surroundings(const abbe_air_ray *r, const abbe_environment_light *e,
                                  const double u[6], float rgb[3], uint32_t *rays) {
   float density, to[2][3], radiance[2][3], pdf[2];
   const float extinction = abbe_haze_extinction(r->haze, -1, r->step, r->within);
   const float t = r->from + abbe_haze_place(extinction, r->to - r->from, (float)u[5], &density);
   abbe_environment_light_sample(e, u, to[0], &pdf[0], radiance[0]);
-  turn(r->haze, r->d, (float)u[3], (float)u[4], to[1]);
+  abbe_haze_turn(r->haze, -1, r->d, (float)u[3], (float)u[4], to[1]);
   abbe_environment_light_seen(e, to[1], radiance[1]);
   pdf[1] = abbe_environment_light_pdf(e, to[1]);
   for (int k = 0; k < 3; k++) rgb[k] = 0;

@@ -10,7 +10,7 @@
 
 /* File: a line of magic, lines of text that say what the run is, an empty line, then counts,
  * ledger and sums as the machine keeps them, and a hash of all before it. */
-static const char magic[] = "abbe checkpoint 10\n";
+static const char magic[] = "abbe checkpoint 11\n";
 /* Bytes that hold all the lines, and those of the magic that versions share. */
 enum { HEAD = 4096, SAME_MAGIC = 16 };
 
@@ -60,7 +60,7 @@ static uint64_t hash_haze(uint64_t h, const abbe_haze *haze) {
 static uint64_t hash_media(uint64_t h, const abbe_media *m) {
   const size_t values = m->refractors * (m->steps + 1);
   h = hash_haze(h, &m->haze);
-  if (m->films.count > 0) h = hash(h, &m->films.key, sizeof m->films.key);
+  if (m->films.key != 0) h = hash(h, &m->films.key, sizeof m->films.key);
   h = hash(h, m->n, values * sizeof *m->n);
   if (m->attenuation != NULL) h = hash(h, m->attenuation, values * sizeof *m->attenuation);
   if (m->extraordinary == NULL) return h;

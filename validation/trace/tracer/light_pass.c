@@ -216,6 +216,11 @@ typedef struct task_result {
   abbe_shaft_photons *shafts; /* NULL: nothing scatters */
 } task_result;
 
+/* Whether paths of the camera meet the light by themselves. */
+static bool is_found(const abbe_tracer *t, size_t light) {
+  return light >= t->scene->light_count || abbe_light_has_size(&t->scene->light[light]);
+}
+
 /* For a task whose photons a medium may scatter in view of the camera. */
 static abbe_shaft_photons *watch_shafts(const abbe_emission *e, sink *s) {
   abbe_tracer *t = s->t;
@@ -224,7 +229,8 @@ static abbe_shaft_photons *watch_shafts(const abbe_emission *e, sink *s) {
   if (shafts == NULL) return NULL;
   memset(shafts, 0, sizeof *shafts);
   shafts->geometry = &t->geometry;
-  shafts->haze = &t->media.haze;
+  shafts->media = &t->media;
+  shafts->found = is_found(t, e->light);
   shafts->camera = &t->camera;
   shafts->eye_medium = abbe_media_of(t->eye.inside);
   shafts->near = t->eye.shaft_near;
@@ -300,6 +306,8 @@ static void add_ledger(abbe_light_ledger *to, const abbe_light_ledger *from) {
   to->trapped += from->trapped;
   to->lost += from->lost;
   to->scattered += from->scattered;
+  to->turned += from->turned;
+  to->frosted += from->frosted;
 }
 
 /* The tasks of one light; results are joined in the order of the tasks, whoever did them. */
@@ -364,10 +372,12 @@ static bool reflects(const abbe_object *o) {
 }
 
 /* Whether photons of the light can show: in a map what they fall on, in a picture what reflects or
- * scatters them. */
+ * scatters them; in refractors that scatter more than once paths of the camera find some lights. */
 static bool asks_for(const abbe_tracer *t, size_t light) {
   const abbe_geometry *g = &t->geometry;
-  if (!t->desc.no_picture && abbe_haze_is(&t->media.haze)) return true;
+  const abbe_haze *haze = &t->media.haze;
+  const bool gathered = haze->once || abbe_haze_scatters(haze, -1) || !is_found(t, light);
+  if (!t->desc.no_picture && abbe_haze_is(haze) && gathered) return true;
   for (size_t i = 0; i < g->scene->object_count; i++)
     if (g->surface[i].kind == ABBE_GEOMETRY_RECEIVERS &&
         (abbe_tracer_maps(t, light) || (!t->desc.no_picture && reflects(&g->scene->object[i]))))

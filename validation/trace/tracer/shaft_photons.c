@@ -45,8 +45,9 @@ static void splat(abbe_shaft_photons *s, const abbe_light_stretch *from, const f
   }
   const float metres = distance * (float)s->geometry->unit;
   const float value =
-      flux * abbe_haze_phase(s->haze, from->medium, cosine) * per_pixel / (metres * metres) *
-      abbe_haze_left(s->haze, from->medium, p, d, 0, distance, from->step, from->within);
+      flux * abbe_haze_phase(&s->media->haze, from->medium, cosine) * per_pixel /
+      (metres * metres) *
+      abbe_haze_left(&s->media->haze, from->medium, p, d, 0, distance, from->step, from->within);
   if (!(value > 0)) return;
   s->splat[s->waiting] = (abbe_shaft_splat){pixel, from->step, value};
   aim_at_eye(s, p, d, distance);
@@ -74,12 +75,14 @@ static void keep(abbe_shaft_photons *s, const abbe_light_stretch *from, const fl
 
 void abbe_shaft_photons_take(void *user, const abbe_light_stretch *from) {
   abbe_shaft_photons *s = user;
-  const abbe_haze *h = s->haze;
+  const abbe_haze *h = &s->media->haze;
   float near = 0, far = from->length, random[4], density, p[3];
+  if (abbe_haze_turns(h, from->medium) && (s->found || from->turned)) return;
   if (!abbe_haze_scatters(h, from->medium) ||
       !abbe_haze_clip(h, from->medium, from->o, from->d, &near, &far) || !(far < INFINITY))
     return;
-  const float extinction = abbe_haze_extinction(h, from->medium, from->step, from->within);
+  const float extinction =
+      abbe_media_extinction(s->media, from->medium, from->step, from->within, from->d, from->wave);
   abbe_random4(from->id, from->steps, s->pass, s->seed ^ 0x73686674u, random);
   const float t = abbe_haze_place(extinction, far - near, random[0], &density);
   const float flux = from->flux * expf(-t * extinction) / density *

@@ -4,7 +4,8 @@
  * A place that the camera sees straight, in the medium that the camera is in, adds to its pixel at
  * once, unbiased; nearer than a distance it does not, where few would add much. All are kept for
  * gathers along paths of the camera. The path goes on with what is left of it, whatever happened
- * here.
+ * here. In a refractor whose haze scatters more than once paths of the camera are turned too, and
+ * find all light but that of lights without size at its first turn.
  *
  * Internal to validation/.
  */
@@ -30,12 +31,13 @@ typedef struct abbe_shaft_splat {
 /* Photons of one light and one thread. What is above `add` is given; the rest starts zeroed. */
 typedef struct abbe_shaft_photons {
   const abbe_geometry *geometry;
-  const abbe_haze *haze;
+  const abbe_media *media;
   const abbe_trace_camera *camera;
   int eye_medium; /* refractor that the camera is in, or -1 */
   float near;     /* frame: no nearer to the camera are places splatted */
   uint32_t pass, seed;
   uint32_t colour; /* colour of the light's first step */
+  bool found;      /* paths of the camera meet the light by themselves: it has a size */
   void (*add)(void *user, const abbe_shaft_splat *splat);
   void *user;
   struct RTCRay16 packet; /* to the camera, of splats that wait */

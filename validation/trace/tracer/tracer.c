@@ -110,6 +110,9 @@ static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
     result =
         abbe_media_make(&t->geometry, t->sampling.lambda_nm, t->sampling.steps, &t->media, error);
   if (d->physics.matched) abbe_media_forget_axes(&t->media);
+  t->media.haze.once = d->physics.matched || d->physics.once;
+  if (result == ABBE_OK && !t->media.haze.once)
+    result = abbe_haze_check(&t->media.haze, &t->geometry, error);
   if (result == ABBE_OK)
     result = abbe_mirrors_make(&t->geometry, t->sampling.lambda_nm, t->sampling.steps, &t->mirrors,
                                error);

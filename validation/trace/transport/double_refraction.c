@@ -170,3 +170,24 @@ const abbe_wave_way *abbe_wave_ways_choose(const abbe_wave_ways *w, float chance
   for (float sum = w->way[i].share; i + 1 < end && which * all >= sum; sum += w->way[i].share) i++;
   return &w->way[i];
 }
+
+void abbe_media_wave_vector(const abbe_media *m, int medium, uint32_t step, float within,
+                            uint8_t wave, const double ray[3], double out[3]) {
+  double n = (double)abbe_media_n(m, medium, step, within), normal[3] = {ray[0], ray[1], ray[2]};
+  if (abbe_media_is_biaxial(m, medium)) {
+    abbe_biaxial crystal;
+    abbe_biaxial_state state;
+    abbe_media_axes(m, medium, step, within, &crystal);
+    abbe_biaxial_of_ray(&crystal, (abbe_biaxial_mode)wave, ray, &state);
+    n = state.index;
+    memcpy(normal, state.normal, sizeof normal);
+  } else if (abbe_media_is_crystal(m, medium) && wave == ABBE_UNIAXIAL_EXTRAORDINARY) {
+    abbe_uniaxial crystal;
+    abbe_media_crystal(m, medium, step, within, &crystal);
+    abbe_uniaxial_normal(&crystal, ABBE_UNIAXIAL_EXTRAORDINARY, ray, normal);
+    double along = 0;
+    for (int k = 0; k < 3; k++) along += normal[k] * crystal.axis[k];
+    n = abbe_uniaxial_index(crystal.n_o, crystal.n_e, along);
+  }
+  for (int k = 0; k < 3; k++) out[k] = n * normal[k];
+}

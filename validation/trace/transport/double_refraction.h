@@ -64,6 +64,7 @@ typedef struct abbe_wave_face {
   float n[3], d[3];
   uint8_t wave;
   const float *stokes; /* [3] of polarised light; NULL: it counts as unpolarised */
+  float rough;         /* how rough it is, by GGX's alpha; 0: smooth */
 } abbe_wave_face;
 
 /* The same between two media at a wavelength of the tables. */
@@ -101,5 +102,27 @@ void abbe_polarised_camera(const abbe_polariser *sheet, const float right[3], co
 /* One of the ways by two numbers: reflection below the reflected share, as far as there is any,
  * and then one of both waves. */
 const abbe_wave_way *abbe_wave_ways_choose(const abbe_wave_ways *ways, float chance, float which);
+
+/* The wave's normal times its index, for that unit ray in a medium (-1: air). */
+void abbe_media_wave_vector(const abbe_media *media, int medium, uint32_t step, float within,
+                            uint8_t wave, const double ray[3], double out[3]);
+
+/* How much of the light of a rough face goes towards a light without size. */
+typedef struct abbe_rough_look {
+  float to[3];     /* unit, away from the face, in air */
+  float density;   /* out: share of the light, 1/sr, estimated */
+  float stokes[3]; /* out: of polarised light, times the density */
+} abbe_rough_look;
+
+/* One way on from a rough face. Light is followed from facet to facet until it leaves to one side:
+ * what one facet sends to another is not lost, and shares are 1 but for what films absorb
+ * [Heitz2016]. Facets are GGX's [Walter2007]; each reflects and refracts as a smooth face does, and
+ * turns a crystal's wave into one by its share. Of the first facet alone it has reflection by the
+ * height-correlated masking and refraction by Euler's beta function of both sides'. key: of the
+ * random numbers. out->share is 0 of light that is still between facets after a thousand. Returns
+ * how many it has met. */
+uint32_t abbe_media_roughen(const abbe_media *media, const abbe_wave_face *face, uint32_t step,
+                            float within, const uint32_t key[4], abbe_rough_look *look,
+                            size_t looks, abbe_wave_way *out);
 
 #endif

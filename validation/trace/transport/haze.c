@@ -1,5 +1,7 @@
 #include "validation/trace/transport/haze.h"
 
+#include "base/maths.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -67,4 +69,38 @@ void abbe_haze_free(abbe_haze *h) {
   free(h->coloured);
   free(h->g);
   *h = (abbe_haze){0};
+}
+
+void abbe_haze_turn(const abbe_haze *h, int i, const float d[3], float u, float v, float out[3]) {
+  const double g = (double)h->g[abbe_haze_row(h, i)], w = (double)u;
+  const double s = (1 - g * g) / (1 - g + 2 * g * w);
+  const double turned = fabs(g) < 1e-6 ? 2 * w - 1 : (1 + g * g - s * s) / (2 * g);
+  const float cosine = fminf(fmaxf((float)turned, -1), 1);
+  const float sine = sqrtf(1 - cosine * cosine), angle = 6.28318531f * v;
+  float x[3], y[3];
+  abbe_geometry_across(d, x, y);
+  for (int k = 0; k < 3; k++)
+    out[k] = cosine * d[k] + sine * (cosf(angle) * x[k] + sinf(angle) * y[k]);
+}
+
+/* In a ball of that depth across, the share that is scattered more than N times falls about as
+ * exp(-N / (0.08 (1 - g) depth^2)), the slowest mode of diffusion. */
+abbe_result abbe_haze_check(const abbe_haze *h, const abbe_geometry *g, abbe_error *error) {
+  const double most = 1000;
+  for (size_t row = 0; abbe_haze_is(h) && row < g->refractor_count; row++) {
+    const abbe_object *o = &g->scene->object[g->refractor_object[row]];
+    double size[3], scattering = 0;
+    abbe_vector_subtract(o->max, o->min, size);
+    for (size_t k = 0; k <= h->steps; k++)
+      scattering = fmax(scattering, (double)h->scattering[row * (h->steps + 1) + k] / g->unit);
+    const double across = abbe_vector_length(size), depth = scattering * across,
+                 turned = 0.08 * (1 - (double)h->g[row]);
+    if (depth + turned * depth * depth <= most) continue;
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the 'medium' of '%s' scatters light more often than can be followed: "
+                          "give it a 'scattering' of at most %.2g per metre, or --physics matched, "
+                          "which scatters once",
+                          o->name, (sqrt(1 + 4 * turned * most) - 1) / (2 * turned) / across);
+  }
+  return ABBE_OK;
 }

@@ -2,8 +2,7 @@
  * turned.
  *
  * Tables over the sampler's wavelengths in frame units, a row a refractor and the air's last.
- * Light that is scattered once leaves the path that it was on; what becomes of it is the walks'
- * business. Its oracle is scenes/medium/medium.h.
+ * What becomes of scattered light is the walks' business. Its oracle is scenes/medium/medium.h.
  *
  * Internal to validation/.
  */
@@ -26,6 +25,7 @@ typedef struct abbe_haze {
   bool *scatters;    /* [refractors + 1] at some wavelength */
   bool *coloured;    /* [refractors + 1] its extinction or scattering varies */
   float *g;          /* [refractors + 1] */
+  bool once;         /* refractors scatter light once; else as often as it comes */
   bool air;          /* the air has a region: */
   float low[3], high[3];
 } abbe_haze;
@@ -34,6 +34,11 @@ typedef struct abbe_haze {
 abbe_result abbe_haze_make(const abbe_geometry *geometry, const double *lambda_nm, size_t steps,
                            const float *attenuation, abbe_haze *out, abbe_error *error);
 void abbe_haze_free(abbe_haze *haze);
+
+/* Refuses by name a refractor in which paths would be scattered too often to be followed.
+ * ABBE_UNSUPPORTED. */
+abbe_result abbe_haze_check(const abbe_haze *haze, const abbe_geometry *geometry,
+                            abbe_error *error);
 
 static inline bool abbe_haze_is(const abbe_haze *h) {
   return h->scattering != NULL;
@@ -45,6 +50,10 @@ static inline size_t abbe_haze_row(const abbe_haze *h, int i) {
 }
 static inline bool abbe_haze_scatters(const abbe_haze *h, int i) {
   return abbe_haze_is(h) && h->scatters[abbe_haze_row(h, i)];
+}
+/* Whether it scatters light as often as it comes. */
+static inline bool abbe_haze_turns(const abbe_haze *h, int i) {
+  return i >= 0 && abbe_haze_scatters(h, i) && !h->once;
 }
 static inline bool abbe_haze_is_coloured(const abbe_haze *h, int i) {
   return abbe_haze_is(h) && h->coloured[abbe_haze_row(h, i)];
@@ -91,6 +100,9 @@ static inline float abbe_haze_phase(const abbe_haze *h, int i, float cosine) {
   const float g = h->g[abbe_haze_row(h, i)], square = 1 + g * g - 2 * g * cosine;
   return 0.0795774715f * (1 - g * g) / (square * sqrtf(square));
 }
+
+/* A direction that light along d is turned to, by the phase function and u and v in [0, 1). */
+void abbe_haze_turn(const abbe_haze *haze, int i, const float d[3], float u, float v, float out[3]);
 
 /* A place on [0, length], by the share u in [0, 1) of what a medium of that extinction takes on all
  * of it; *density: of such places, a unit of length. */

@@ -1,6 +1,7 @@
 #include "validation/trace/transport/media.h"
 
 #include "base/maths.h"
+#include "scenes/geometry/digest.h"
 #include "spectral/uniaxial.h"
 
 #include <assert.h>
@@ -121,6 +122,21 @@ static abbe_result fill(const abbe_geometry *g, const double *lambda_nm, abbe_me
   return ABBE_OK;
 }
 
+/* The rough facets of each; none where no refractor has any. */
+static abbe_result find_rough(const abbe_geometry *g, abbe_media *m, abbe_error *error) {
+  for (size_t i = 0; i < m->refractors; i++) {
+    const abbe_coatings *rough = object_of(g, i)->roughness;
+    if (rough == NULL) continue;
+    if (m->rough == NULL) m->rough = calloc(m->refractors, sizeof *m->rough);
+    if (m->rough == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for facets");
+    m->rough[i] = rough;
+    for (size_t k = 0; k < rough->count; k++)
+      m->films.key = abbe_digest_array(m->films.key, &rough->coating[k].alpha, 1, sizeof(double));
+    m->films.key = abbe_digest_array(m->films.key, rough->face, rough->face_count, 1);
+  }
+  return ABBE_OK;
+}
+
 abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_nm, size_t steps,
                             abbe_media *out, abbe_error *error) {
   assert(geometry->scene);
@@ -145,6 +161,7 @@ abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_
   if (result == ABBE_OK)
     result = abbe_haze_make(geometry, lambda_nm, steps, m.attenuation, &m.haze, error);
   if (result == ABBE_OK) result = abbe_films_make(geometry, lambda_nm, steps, &m.films, error);
+  if (result == ABBE_OK) result = find_rough(geometry, &m, error);
   /* the mean over the axes may be grey where each axis has a colour */
   for (size_t i = 0; i < m.refractors && m.pleochroism != NULL && abbe_haze_is(&m.haze); i++)
     m.haze.coloured[i] = m.haze.coloured[i] || m.pleochroic[i];
@@ -162,6 +179,7 @@ void abbe_media_free(abbe_media *m) {
   free_crystals(m);
   abbe_haze_free(&m->haze);
   abbe_films_free(&m->films);
+  free(m->rough);
   *m = (abbe_media){0};
 }
 
@@ -200,5 +218,7 @@ float abbe_media_attenuation_along(const abbe_media *m, int i, uint32_t k, float
 
 void abbe_media_forget_axes(abbe_media *m) {
   abbe_films_free(&m->films);
+  free(m->rough);
+  m->rough = NULL;
   free_crystals(m);
 }

@@ -46,7 +46,7 @@ typedef struct abbe_films {
   abbe_film_layer (*layer)[ABBE_FILM_MOST_LAYERS]; /* [count][steps + 1] */
   const abbe_coatings **on; /* [refractors] or NULL; the films of each follow one another: */
   size_t *first;            /* [refractors] */
-  uint64_t key;             /* a digest of all that */
+  uint64_t key;             /* a digest of all that, and of rough facets; 0: neither is there */
 } abbe_films;
 
 /* Errors as abbe_coating_at. */
@@ -90,6 +90,7 @@ typedef struct abbe_media {
                          where no crystal absorbs by direction */
   abbe_haze haze;     /* what scatters in them and in the air */
   abbe_films films;   /* on their surfaces */
+  const abbe_coatings **rough; /* [refractors] their rough facets, or NULL; NULL: none has any */
 } abbe_media;
 
 /* Tables over the steps + 1 wavelengths lambda_nm, ascending. Errors as abbe_material_n. */
@@ -97,8 +98,8 @@ abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_
                             abbe_media *out, abbe_error *error);
 void abbe_media_free(abbe_media *media);
 
-/* Takes crystals for isotropic with their ordinary index, and all faces for bare, as the renderer
- * does. */
+/* Takes crystals for isotropic with their ordinary index, and all faces for bare and smooth, as the
+ * renderer does. */
 void abbe_media_forget_axes(abbe_media *media);
 
 /* Whether the medium (-1: air) has two indices. */
@@ -119,6 +120,14 @@ static inline bool abbe_media_same(const abbe_media *m, int a, int b) {
 /* The film on the surface that is hit between two media, or -1; a covered surface has none. */
 static inline int abbe_media_film(const abbe_media *m, int from, int to, const abbe_hit *hit) {
   return from == to ? -1 : abbe_films_on(&m->films, hit->surface->index, hit->face);
+}
+
+/* How rough the surface is that is hit between two media, 0: it is smooth, or no interface. */
+static inline float abbe_media_roughness(const abbe_media *m, int from, int to,
+                                         const abbe_hit *hit) {
+  if (m->rough == NULL || abbe_media_same(m, from, to)) return 0;
+  const abbe_coating *c = abbe_coatings_on(m->rough[hit->surface->index], hit->face);
+  return c != NULL ? (float)c->alpha : 0;
 }
 
 /* Index of medium i (-1: air) within step k, at the share f of it. */
@@ -151,12 +160,12 @@ static inline float abbe_media_loss(const abbe_media *m, int i, uint32_t k, floa
   return abbe_media_attenuation(m, i, k, f);
 }
 
-/* What absorption and scattering take of it where there is haze. Crystals have no medium of their
- * own, so a pleochroic one only absorbs. */
+/* What absorption and scattering take of it where there is haze. */
 static inline float abbe_media_extinction(const abbe_media *m, int i, uint32_t k, float f,
                                           const float d[3], uint8_t wave) {
   if (m->pleochroism != NULL && i >= 0 && m->pleochroic[i])
-    return abbe_media_attenuation_along(m, i, k, f, d, wave);
+    return abbe_media_attenuation_along(m, i, k, f, d, wave) +
+           abbe_haze_scattering(&m->haze, i, k, f);
   return abbe_haze_extinction(&m->haze, i, k, f);
 }
 

@@ -20,6 +20,7 @@ typedef struct abbe_physics {
   size_t eye_orders;   /* the same of the camera's paths; 0: as the light's */
   double eye_share;
   bool polarised; /* not matched: paths carry the light's polarisation */
+  bool once; /* a medium scatters light once, as the renderer has it; matched physics always does */
 } abbe_physics;
 
 #endif

@@ -147,7 +147,8 @@ abbe_result abbe_solids_make(const abbe_geometry *g, abbe_solid **out, abbe_erro
     const abbe_surface *s = &g->surface[i];
     if (s->kind != ABBE_GEOMETRY_REFRACTORS) continue;
     const abbe_object *o = object_of(g, s);
-    if (o->coatings != NULL) continue; /* its planes say not which face is coated */
+    /* its planes say not which face is coated or rough */
+    if (o->coatings != NULL || o->roughness != NULL) continue;
     abbe_solid *solid = &solids[s->index];
     body b = {.g = g, .surface = s, .solid = solid, .object = o};
     for (int k = 0; k < 3; k++)

@@ -431,6 +431,42 @@ void abbe_eye_gloss(const abbe_eye_context *c, const abbe_eye_path *path, const 
   if (w->environment->environment != NULL) gloss_of_surroundings(c, &own, hit, n, rough);
 }
 
+void abbe_eye_roughen(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_hit *hit,
+                      const abbe_wave_face *face, abbe_wave_way *way) {
+  const abbe_scene *scene = c->w->geometry->scene;
+  abbe_rough_look look[ABBE_SCENE_MAX_LIGHTS];
+  float power[ABBE_SCENE_MAX_LIGHTS], random[4];
+  size_t of[ABBE_SCENE_MAX_LIGHTS], looks = 0;
+  const float away[3] = {-face->n[0], -face->n[1], -face->n[2]};
+  for (size_t l = 0; l < scene->light_count; l++) {
+    if (abbe_light_has_size(&scene->light[l])) continue;
+    abbe_eye_random4(c, ~p->id ^ 0x6c616d70u, (uint32_t)(p->steps * ABBE_SCENE_MAX_LIGHTS + l),
+                     random);
+    for (int side = 0; side < 2; side++) {
+      float *to = look[looks].to;
+      const float *n = side == 0 ? face->n : away;
+      const float e = (side == 0 ? face->from : face->to) < 0
+                          ? irradiance(c, p, &scene->light[l], hit, n, random, to)
+                          : 0;
+      if (!(e > 0)) continue;
+      power[looks] = e / abbe_eye_dot(n, to);
+      of[looks++] = l;
+      break;
+    }
+  }
+  uint32_t key[4];
+  abbe_eye_random_bits(c, p->id ^ 0x66726f73u, p->steps, key);
+  abbe_media_roughen(c->w->media, face, p->step, p->within, key, look, looks, way);
+  abbe_eye_path own = *p;
+  own.share *= spread(c, p, false);
+  for (size_t i = 0; i < looks; i++) {
+    if (!(look[i].density > 0)) continue;
+    for (int k = 0; k < 3; k++) look[i].stokes[k] /= look[i].density;
+    const float share = look[i].density * analysed(c, of[i], look[i].to, look[i].stokes);
+    add_light(c, &own, of[i], power[i] * share, NULL);
+  }
+}
+
 /* What is left to a path off a rough mirror, which has looked for what has that density itself. */
 static float weight_of(const abbe_eye_path *p, float pdf) {
   return p->lobe > 0 ? p->lobe / (p->lobe + pdf) : 1;

@@ -6,6 +6,7 @@
 #ifndef ABBE_VALIDATION_TRACE_WALKS_EYE_SHADING_H
 #define ABBE_VALIDATION_TRACE_WALKS_EYE_SHADING_H
 
+#include "validation/trace/transport/double_refraction.h"
 #include "validation/trace/transport/random.h"
 #include "validation/trace/walks/eye_walk.h"
 
@@ -51,6 +52,23 @@ static inline void abbe_eye_random4(const abbe_eye_context *c, uint32_t a, uint3
   for (int k = 0; k < 4; k++) out[k] = abbe_random_float(bits[k]);
 }
 
+/* wave: a fraction of 2^32 of the spectrum. */
+static inline void abbe_eye_disperse(abbe_eye_path *p, uint32_t wave) {
+  if (p->dispersed) return;
+  p->dispersed = true;
+  p->step = abbe_spectral_sampling_step(wave, &p->within);
+}
+
+/* What the path meets next, and how far off; false: nothing. */
+bool abbe_eye_trace(const abbe_eye_context *context, const abbe_eye_path *path, abbe_hit *hit,
+                    float *length);
+
+/* What a refractor that scatters more than once turns of the path on its way of that length, before
+ * it is weakened: as *turned where that goes on. u: in [0, 1). Shares of both branches are those of
+ * what came. */
+bool abbe_eye_turn(const abbe_eye_context *context, abbe_eye_path *path, float length, float u,
+                   abbe_eye_path *turned);
+
 /* What ends a path goes into the sample: a receiver, a light, or nothing at all. straight: the
  * camera's own ray, whose caustic the photons bring. */
 void abbe_eye_arrive(const abbe_eye_context *context, const abbe_eye_path *path, bool met,
@@ -60,6 +78,10 @@ void abbe_eye_arrive(const abbe_eye_context *context, const abbe_eye_path *path,
  * path. Where its coefficients vary over wavelength the path is dispersed. straight: as above. */
 void abbe_eye_haze(const abbe_eye_context *context, abbe_eye_path *path, float length,
                    bool straight);
+
+/* What a rough face shows of lights without size, which no path meets; *way: one way on from it. */
+void abbe_eye_roughen(const abbe_eye_context *context, const abbe_eye_path *path,
+                      const abbe_hit *hit, const abbe_wave_face *face, abbe_wave_way *way);
 /* What a rough mirror shows of lights and the environment that it sees straight: of what comes to
  * it by other paths a path's next ray brings, and of these, too, where their weights allow
  * [VeachGuibas1995]. n: on the path's side. */

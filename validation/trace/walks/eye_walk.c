@@ -4,46 +4,18 @@
 #include "validation/trace/transport/interface.h"
 #include "validation/trace/walks/eye_shading.h"
 
+#include <stddef.h>
 #include <string.h>
 
 /* A mirror image is tinted by so many wavelengths, a film's by more; each stands for its share of
  * all parts of the spectrum. */
 enum { MIRROR_BANDS = 8, FILM_BANDS = 64, ALL_PARTS = 128 };
-enum { HEROES = 4, MAX_STEPS = 10000, BRANCHES_ROOM = 16, IDS = 8 };
+enum { HEROES = 4, MAX_STEPS = 10000, BRANCHES_ROOM = 16, TURNS_ROOM = 64, IDS = 8 };
 /* Golden ratios of three dimensions, 2^32 each: places of a pixel's samples and their wavelengths
  * [Roberts2018]. */
 static const uint32_t golden[3] = {3518319155u, 2882110345u, 2360945575u};
 
 /* ---- paths ---- */
-
-/* From inside a solid: where the path leaves it. */
-static bool leave_solid(const abbe_geometry *g, const abbe_eye_path *p, abbe_hit *hit,
-                        float *length) {
-  int refractor = abbe_media_of(p->inside);
-  if (refractor < 0 || !abbe_solid_is(&g->solid[refractor])) return false;
-  *hit = (abbe_hit){.surface = &g->surface[g->refractor_object[refractor]]};
-  *length = abbe_solid_leave(&g->solid[refractor], p->o, p->d, hit->p, hit->n);
-  memcpy(hit->ng, hit->n, sizeof hit->ng);
-  return true;
-}
-
-static bool trace(const abbe_eye_context *c, const abbe_eye_path *p, abbe_hit *hit, float *length) {
-  c->out->rays++;
-  if (leave_solid(c->w->geometry, p, hit, length)) return true;
-  if (!abbe_geometry_hit(c->w->geometry, ABBE_GEOMETRY_ALL, p->o, p->d, INFINITY, hit))
-    return false;
-  float square = 0;
-  for (int k = 0; k < 3; k++) square += (hit->p[k] - p->o[k]) * (hit->p[k] - p->o[k]);
-  *length = sqrtf(square);
-  return true;
-}
-
-/* wave: a fraction of 2^32 of the spectrum. */
-static void disperse(abbe_eye_path *p, uint32_t wave) {
-  if (p->dispersed) return;
-  p->dispersed = true;
-  p->step = abbe_spectral_sampling_step(wave, &p->within);
-}
 
 typedef struct crossing {
   abbe_media_set before, after;
@@ -64,6 +36,7 @@ static void cross(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_
   x->face.from = abbe_media_of(x->before);
   x->face.to = abbe_media_of(x->after);
   x->face.film = abbe_media_film(c->w->media, x->face.from, x->face.to, hit);
+  x->face.rough = abbe_media_roughness(c->w->media, x->face.from, x->face.to, hit);
   x->face.stokes = c->w->physics.polarised ? p->stokes : NULL;
   x->crystal = x->face.stokes != NULL || abbe_media_is_crystal(c->w->media, x->face.from) ||
                abbe_media_is_crystal(c->w->media, x->face.to);
@@ -137,21 +110,20 @@ static bool is_coloured_haze(const abbe_eye_context *c, const abbe_eye_path *p) 
   return abbe_haze_is_coloured(&c->w->media->haze, abbe_media_of(p->inside));
 }
 
-/* Absorption along the way in the medium; the whole spectrum's goes by wavelength, so the path
- * takes one. */
+/* Absorption along the way in the medium, by wavelength. */
 static void absorb(const abbe_eye_context *c, abbe_eye_path *p, float length, uint32_t wave) {
-  int medium = abbe_media_of(p->inside);
-  if (medium < 0 || c->w->media->attenuation == NULL) return;
-  disperse(p, wave);
-  p->share *=
-      expf(-length * abbe_media_loss(c->w->media, medium, p->step, p->within, p->d, p->wave));
+  const abbe_media *m = c->w->media;
+  const int medium = abbe_media_of(p->inside);
+  if (medium < 0 || m->attenuation == NULL) return;
+  abbe_eye_disperse(p, wave);
+  p->share *= expf(-length * abbe_media_loss(m, medium, p->step, p->within, p->d, p->wave));
 }
 
 /* ---- branches ---- */
 
 /* Paths that wait for their turn. The smaller branch is followed first, so that few wait. */
 typedef struct branches {
-  abbe_eye_path path[BRANCHES_ROOM];
+  abbe_eye_path path[TURNS_ROOM];
   uint32_t count;
   float least; /* share below which absorption ends a path by roulette */
 } branches;
@@ -180,7 +152,7 @@ static bool scatter(const abbe_eye_context *c, branches *b, abbe_eye_path *p, co
                     const crossing *x, float random) {
   float way[3], share = reflectance_at(c, x, p->step, p->within, way);
   p->share *= way[2];
-  if (share <= 0 || share >= 1 || b->count == BRANCHES_ROOM) {
+  if (share <= 0 || share >= 1 || b->count >= BRANCHES_ROOM) {
     bool reflects = random < share;
     if (!matched_rules(c, p, reflects, share)) return false;
     send(p, hit, x, reflects, way[0], way[1]);
@@ -232,6 +204,16 @@ static bool scatter_waves(const abbe_eye_context *c, branches *b, abbe_eye_path 
   return goes;
 }
 
+/* One way on from a rough face; false where nothing is left. */
+static bool scatter_rough(const abbe_eye_context *c, abbe_eye_path *p, const abbe_hit *hit,
+                          const crossing *x) {
+  abbe_wave_way way;
+  abbe_eye_roughen(c, p, hit, &x->face, &way);
+  p->share *= way.share;
+  send_as(p, hit, x, &way);
+  return way.share > 0;
+}
+
 /* One way on from a rough mirror, d; what it shows of lights is added. Returns the share that goes
  * there of what the facet met reflects. */
 static float scatter_off(const abbe_eye_context *c, abbe_eye_path *p, const abbe_hit *hit,
@@ -274,11 +256,14 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
   abbe_hit hit;
   uint32_t bits[4];
   float length = 0, random[4];
-  bool met = trace(c, p, &hit, &length);
+  bool met = abbe_eye_trace(c, p, &hit, &length);
   abbe_eye_random_bits(c, p->id, p->steps, bits);
   for (int k = 0; k < 4; k++) random[k] = abbe_random_float(bits[k]);
   if (abbe_haze_is(&c->w->media->haze)) {
-    if (is_coloured_haze(c, p)) disperse(p, bits[1]);
+    if (is_coloured_haze(c, p)) abbe_eye_disperse(p, bits[1]);
+    if (b->count < TURNS_ROOM &&
+        abbe_eye_turn(c, p, met ? length : INFINITY, random[3], &b->path[b->count]))
+      b->count++;
     abbe_eye_haze(c, p, met ? length : INFINITY, false);
   } else if (met) {
     absorb(c, p, length, bits[1]);
@@ -292,7 +277,7 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
     return false;
   }
   if (hit.surface->kind == ABBE_GEOMETRY_MIRRORS) {
-    if (is_coloured_mirror(c, &hit)) disperse(p, bits[1]);
+    if (is_coloured_mirror(c, &hit)) abbe_eye_disperse(p, bits[1]);
     mirror_on(c, p, &hit);
     return p->share > 0;
   }
@@ -304,7 +289,8 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
     abbe_geometry_leave(&hit, p->d, p->o);
     return true;
   }
-  if (disperses(c, &x)) disperse(p, bits[1]);
+  if (disperses(c, &x)) abbe_eye_disperse(p, bits[1]);
+  if (x.face.rough > 0) return scatter_rough(c, p, &hit, &x);
   if (x.crystal) return scatter_waves(c, b, p, &hit, &x, random);
   return scatter(c, b, p, &hit, &x, random[0]);
 }
@@ -328,7 +314,7 @@ static void follow_mirror(const abbe_eye_context *c, const abbe_eye_path *first,
   p.id++;
   float way[3];
   if (w->bands->count > 0 || p.dispersed) {
-    disperse(&p, wave);
+    abbe_eye_disperse(&p, wave);
     const float share = reflectance_at(c, x, p.step, p.within, way);
     p.share *= share * way[2];
   } else {
@@ -380,7 +366,7 @@ static void follow_through(const abbe_eye_context *c, const abbe_eye_path *first
     abbe_eye_path p = *first;
     p.id += 2 + i;
     p.share /= (float)count;
-    if (takes) disperse(&p, abbe_random_part(wave, i, count));
+    if (takes) abbe_eye_disperse(&p, abbe_random_part(wave, i, count));
     if (x->crystal) {
       follow_waves(c, &p, hit, x);
       continue;
@@ -394,18 +380,22 @@ static void follow_through(const abbe_eye_context *c, const abbe_eye_path *first
   }
 }
 
-/* What the camera sees straight in a mirror: wavelengths of their own where it has a colour. */
+/* What the camera sees straight in a mirror or, where x is not NULL, a rough face: wavelengths of
+ * their own where it has a colour. */
 static void follow_off(const abbe_eye_context *c, const abbe_eye_path *first, const abbe_hit *hit,
-                       uint32_t wave) {
-  const bool takes = is_coloured_mirror(c, hit);
-  const bool spreads = abbe_mirrors_is_rough(c->w->mirrors, hit->surface->index);
+                       const crossing *x, uint32_t wave) {
+  const bool takes = x != NULL ? disperses(c, x) : is_coloured_mirror(c, hit);
+  const bool spreads = x != NULL || abbe_mirrors_is_rough(c->w->mirrors, hit->surface->index);
   const uint32_t count = spreads || (takes && !first->dispersed) ? HEROES : 1;
   for (uint32_t i = 0; i < count; i++) {
     abbe_eye_path p = *first;
     p.id += 2 + i;
     p.share /= (float)count;
-    if (takes) disperse(&p, abbe_random_part(wave, i, count));
-    mirror_on(c, &p, hit);
+    if (takes) abbe_eye_disperse(&p, abbe_random_part(wave, i, count));
+    if (x == NULL)
+      mirror_on(c, &p, hit);
+    else
+      scatter_rough(c, &p, hit, x);
     if (p.share > 0) follow(c, &p);
   }
 }
@@ -427,7 +417,7 @@ static void walk_on(const abbe_eye_context *c, abbe_eye_path *p, bool met, const
   }
   c->out->refractor = true;
   if (hit.surface->kind == ABBE_GEOMETRY_MIRRORS) {
-    follow_off(c, p, &hit, wave);
+    follow_off(c, p, &hit, NULL, wave);
     return;
   }
   crossing at;
@@ -437,6 +427,10 @@ static void walk_on(const abbe_eye_context *c, abbe_eye_path *p, bool met, const
     p->inside = at.after;
     abbe_geometry_leave(&hit, p->d, p->o);
     follow(c, p);
+    return;
+  }
+  if (at.face.rough > 0) {
+    follow_off(c, p, &hit, &at, wave);
     return;
   }
   if (at.face.stokes == NULL) follow_mirror(c, p, &hit, &at, wave);
@@ -453,14 +447,15 @@ static void walk_sample(const abbe_eye_context *c, const abbe_trace_camera *came
   if (c->w->physics.polarised)
     abbe_polarised_camera(&c->w->geometry->scene->camera.polariser, camera->right, camera->up, p->d,
                           p->stokes);
-  bool met = trace(c, p, &hit, &length);
+  bool met = abbe_eye_trace(c, p, &hit, &length);
   if (met) add_first(c, p, &hit, length);
   const uint32_t count = is_coloured_haze(c, p) ? HEROES : 1;
   for (uint32_t i = 0; i < count; i++) {
-    abbe_eye_path own = *p;
+    abbe_eye_path own = *p, turned;
     own.id += i << 24;
     own.share /= (float)count;
-    if (count > 1) disperse(&own, abbe_random_part(wave, i, count));
+    if (count > 1) abbe_eye_disperse(&own, abbe_random_part(wave, i, count));
+    if (abbe_eye_turn(c, &own, met ? length : INFINITY, 0.5f, &turned)) follow(c, &turned);
     abbe_eye_haze(c, &own, met ? length : INFINITY, true);
     walk_on(c, &own, met, &hit, wave);
   }
@@ -469,11 +464,9 @@ static void walk_sample(const abbe_eye_context *c, const abbe_trace_camera *came
 void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
                          abbe_eye_sample *out) {
   abbe_eye_context c = {.w = w, .pixel = (uint32_t)pixel, .pass = pass, .out = out};
-  uint32_t count = w->samples != NULL ? w->samples[pixel] : 1;
-  uint32_t shift[4], lens[4];
-  float column = (float)(pixel % w->camera->width);
-  float row = (float)(pixel / w->camera->width);
-  memset(out, 0, sizeof *out);
+  uint32_t count = w->samples != NULL ? w->samples[pixel] : 1, shift[4], lens[4];
+  const float column = (float)(pixel % w->camera->width), row = (float)(pixel / w->camera->width);
+  memset(out, 0, offsetof(abbe_eye_sample, band) + w->bands->count * sizeof *out->band);
   abbe_eye_random_bits(&c, 0, 0, shift);
   for (uint32_t i = 0; i < count; i++) {
     abbe_eye_path p = {.share = 1 / (float)count,

@@ -57,14 +57,14 @@ typedef struct abbe_eye_walk {
 } abbe_eye_walk;
 
 typedef struct abbe_eye_sample {
-  float rgb[3];               /* radiance, W/(m2 sr), white Y = 1 */
-  float caustic[3];           /* the part that came to its receiver through a refractor */
-  float band[ABBE_BANDS_MAX]; /* W/(m2 sr nm) */
-  float albedo[3];            /* reflectance of what shows, by each path's share of the pixel */
-  float normal[3];            /* normal of what the ray meets first, towards the camera; none: 0 */
-  float depth;                /* along the ray to there, frame; none: 0 */
-  bool refractor;             /* the pixel's ray met one, or a mirror, first */
+  float rgb[3];     /* radiance, W/(m2 sr), white Y = 1 */
+  float caustic[3]; /* the part that came to its receiver through a refractor */
+  float albedo[3];  /* reflectance of what shows, by each path's share of the pixel */
+  float normal[3];  /* normal of what the ray meets first, towards the camera; none: 0 */
+  float depth;      /* along the ray to there, frame; none: 0 */
+  bool refractor;   /* the pixel's ray met one, or a mirror, first */
   uint32_t rays;
+  float band[ABBE_BANDS_MAX]; /* W/(m2 sr nm), of as many as there are */
 } abbe_eye_sample;
 
 /* What the pixel (row * width + column) shows in a pass: the mean of its samples, spread evenly

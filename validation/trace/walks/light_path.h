@@ -12,6 +12,7 @@
 #include "validation/trace/transport/mirrors.h"
 #include "validation/trace/transport/random.h"
 #include "validation/trace/walks/inner_walk.h"
+#include "validation/trace/walks/light_walk.h"
 #include "validation/trace/walks/photon.h"
 #include "validation/trace/walks/ray_batch.h"
 #include "validation/trace/walks/scatter.h"
@@ -31,6 +32,7 @@ typedef struct abbe_light_path {
   bool begun;            /* has met its first interface */
   uint8_t wave;          /* in a crystal: which of its two */
   float stokes[3];       /* of polarised light, outside of crystals */
+  bool turned, frosted;  /* by haze in a refractor; at a rough face */
 } abbe_light_path;
 
 /* Along the ray of lane k, which Embree has been through. */
@@ -44,6 +46,8 @@ static inline abbe_light_stretch abbe_light_path_stretch(const abbe_light_path *
   out.id = s->id;
   out.steps = s->steps;
   out.medium = abbe_media_of(s->inside);
+  out.turned = s->turned;
+  out.wave = s->wave;
   abbe_ray_take(rays, k, out.o, out.d);
   return out;
 }
@@ -96,13 +100,45 @@ static inline bool abbe_light_path_fade(const abbe_inner_rules *r, const abbe_me
   if (!abbe_haze_clip(haze, medium, o, d, &from, &to)) return true;
   const float whole = abbe_media_extinction(media, medium, s->step, s->within, d, s->wave);
   if (!(whole > 0)) return true;
-  const float part = abbe_haze_scattering(haze, medium, s->step, s->within) / whole;
-  const float left = expf(-(to - from) * whole), taken = s->y * s->flux * (1 - left);
+  const float off = abbe_haze_scattering(haze, medium, s->step, s->within);
+  const bool turns = abbe_haze_turns(haze, medium); /* what is scattered has gone its own way */
+  const float part = turns ? 0 : off / whole;
+  const float left = expf(-(to - from) * (turns ? whole - off : whole));
+  const float taken = s->y * s->flux * (1 - left);
   ledger->scattered += (double)(part * taken);
   ledger->absorbed += (double)((1 - part) * taken);
   s->flux *= left;
   s->carried *= left;
   return abbe_light_path_survives(r, s, ledger);
+}
+
+/* Where haze in a refractor turns the path before it meets what its ray met: on from o along d;
+ * false: it does not. */
+static inline bool abbe_light_path_turn(const abbe_inner_rules *r, const abbe_media *media,
+                                        abbe_light_path *s, const struct RTCRayHit16 *rays,
+                                        size_t k, float o[3], float d[3],
+                                        abbe_light_ledger *ledger) {
+  const abbe_haze *haze = &media->haze;
+  const int medium = abbe_media_of(s->inside);
+  if (!abbe_haze_turns(haze, medium)) return false;
+  float random[4], along[3];
+  abbe_random4(s->id, s->steps, r->pass, r->seed ^ 0x7475726eu, random);
+  const float off = abbe_haze_scattering(haze, medium, s->step, s->within);
+  const float t = -log1pf(-random[0]) / off;
+  if (!(t < rays->ray.tfar[k])) return false;
+  abbe_ray_take(rays, k, o, along);
+  const float whole = abbe_media_extinction(media, medium, s->step, s->within, along, s->wave);
+  const float left = expf(-t * (whole - off));
+  ledger->absorbed += (double)(s->y * s->flux * (1 - left));
+  s->flux *= left;
+  if (!s->turned) ledger->turned += (double)(s->y * s->flux);
+  s->turned = true;
+  s->wave = random[3] < 0.5f;
+  memset(s->stokes, 0, sizeof s->stokes);
+  s->steps++;
+  for (int i = 0; i < 3; i++) o[i] += t * along[i];
+  abbe_haze_turn(haze, medium, along, random[1], random[2], d);
+  return true;
 }
 
 /* Haze on the way from the light to what a path meets first; the ledger begins there. parallel:
@@ -230,6 +266,37 @@ static inline uint8_t abbe_light_path_bend(const abbe_inner_rules *r, const abbe
   return way->wave;
 }
 
+/* At a rough face: the same, and the share that is not absorbed in *passes. */
+static inline uint8_t abbe_light_path_roughen_face(const abbe_inner_rules *r,
+                                                   const abbe_media *media,
+                                                   const abbe_light_path *s, abbe_wave_face *face,
+                                                   abbe_scatter *p, size_t k, float *passes,
+                                                   float stokes[3]) {
+  float ng[3], d[3];
+  for (int i = 0; i < 3; i++) {
+    face->d[i] = p->d[i][k];
+    face->n[i] = p->n[i][k];
+    ng[i] = p->ng[i][k];
+  }
+  const uint32_t key[4] = {s->id, s->steps, r->pass, r->seed ^ 0x66726f73u};
+  abbe_wave_way way;
+  abbe_media_roughen(media, face, s->step, s->within, key, NULL, 0, &way);
+  for (int i = 0; i < 3; i++) {
+    d[i] = way.d[i];
+    stokes[i] = way.stokes[i];
+  }
+  abbe_interface_keep_side(ng, way.reflected ? 1 : -1, d);
+  if (face->stokes != NULL && memcmp(d, way.d, sizeof d) != 0)
+    abbe_polarised_bend(way.d, d, stokes);
+  for (int i = 0; i < 3; i++) {
+    p->out[i][k] = d[i];
+    if (way.reflected != (p->reflects[k] != 0)) p->from[i][k] = 2 * p->p[i][k] - p->from[i][k];
+  }
+  p->reflects[k] = way.reflected;
+  *passes = way.share;
+  return way.wave;
+}
+
 /* At a coated face: the same of the film; returns what it does not absorb. */
 static inline float abbe_light_path_coat(const abbe_media *media, const abbe_light_path *s,
                                          const abbe_wave_face *face, abbe_scatter *p, size_t k) {
@@ -328,5 +395,43 @@ void abbe_lamp_rays_add(abbe_lamp_rays *rays, const abbe_geometry *g, const abbe
 /* Traces those that wait, flags what is hidden and adds it to the ledger. */
 void abbe_lamp_rays_trace(abbe_lamp_rays *rays, const abbe_geometry *g, abbe_light_ledger *ledger,
                           abbe_ray_record *record);
+
+/* ---- a walk ---- */
+
+/* Paths that are followed side by side, and the ray of each. */
+typedef struct ray_batch {
+  size_t count;
+  struct RTCRayHit16 ray[ABBE_LIGHT_WALK_HITS / ABBE_RAY_LANES];
+  abbe_light_path path[ABBE_LIGHT_WALK_HITS];
+} ray_batch;
+
+/* Paths on the inner side of one solid's surface. */
+typedef struct inner_batch {
+  size_t count;
+  uint32_t refractor;
+  abbe_inner_path inner[ABBE_LIGHT_WALK_HITS];
+  abbe_light_path path[ABBE_LIGHT_WALK_HITS];
+} inner_batch;
+
+struct abbe_light_walk {
+  abbe_lamp_rays lamp_rays;
+  const abbe_geometry *g;
+  const abbe_media *media;
+  const abbe_mirrors *mirrors;
+  abbe_physics physics;
+  uint32_t seed;
+  uint64_t rays;
+  ray_batch *batch, *next; /* rays of this bounce and of the next */
+  inner_batch *inner;
+  uint32_t shift[4]; /* shifts of the pass's even decisions */
+  unsigned splits;   /* interfaces at which paths are split, a bit each */
+  bool small;        /* so few faces that packets stay together wherever their rays go */
+  bool *hidden;      /* [lights] abbe_lamp_is_hidden */
+  bool for_map;
+  abbe_light_walk_stretch take; /* NULL: nobody watches */
+  void *watcher;
+  abbe_ray_record record;
+  abbe_light_walk_room room;
+};
 
 #endif

@@ -11,129 +11,8 @@
 
 enum {
   LANES = ABBE_RAY_LANES,
-  PACKETS = ABBE_LIGHT_WALK_HITS / LANES,
-  SMALL_SCENE = 4096,  /* faces */
   COHERENT_BOUNCES = 2 /* how often rays of a packet are scattered before they are separated */
 };
-
-/* Paths that are followed side by side, and the ray of each. */
-typedef struct ray_batch {
-  size_t count;
-  struct RTCRayHit16 ray[PACKETS];
-  abbe_light_path path[ABBE_LIGHT_WALK_HITS];
-} ray_batch;
-
-/* Paths on the inner side of one solid's surface. */
-typedef struct inner_batch {
-  size_t count;
-  uint32_t refractor;
-  abbe_inner_path inner[ABBE_LIGHT_WALK_HITS];
-  abbe_light_path path[ABBE_LIGHT_WALK_HITS];
-} inner_batch;
-
-struct abbe_light_walk {
-  abbe_lamp_rays lamp_rays;
-  const abbe_geometry *g;
-  const abbe_media *media;
-  const abbe_mirrors *mirrors;
-  abbe_physics physics;
-  uint32_t seed;
-  uint64_t rays;
-  ray_batch *batch, *next; /* rays of this bounce and of the next */
-  inner_batch *inner;
-  uint32_t shift[4]; /* shifts of the pass's even decisions */
-  unsigned splits;   /* interfaces at which paths are split, a bit each */
-  bool small;        /* so few faces that packets stay together wherever their rays go */
-  bool *hidden;      /* [lights] abbe_lamp_is_hidden */
-  bool for_map;
-  abbe_light_walk_stretch take; /* NULL: nobody watches */
-  void *watcher;
-  abbe_ray_record record;
-  abbe_light_walk_room room;
-};
-
-abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media *media,
-                                 const abbe_mirrors *mirrors, const abbe_physics *physics,
-                                 uint32_t seed, abbe_light_walk **out, abbe_error *error) {
-  assert(geometry->scene);
-  *out = NULL;
-  abbe_light_walk *w = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
-  size_t lights = geometry->scene->light_count;
-  if (w != NULL) {
-    memset(w, 0, sizeof *w);
-    w->g = geometry;
-    w->media = media;
-    w->mirrors = mirrors;
-    w->physics = *physics;
-    w->seed = seed;
-    w->for_map = true;
-    w->batch = aligned_alloc(64, (sizeof *w->batch + 63) / 64 * 64);
-    w->next = aligned_alloc(64, (sizeof *w->next + 63) / 64 * 64);
-    w->inner = malloc(sizeof *w->inner);
-    w->hidden = calloc(lights + 1, sizeof *w->hidden);
-  }
-  if (w == NULL || w->batch == NULL || w->next == NULL || w->inner == NULL || w->hidden == NULL) {
-    abbe_light_walk_free(w);
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a batch of photons");
-  }
-  size_t faces = 0;
-  for (size_t i = 0; i < geometry->scene->object_count; i++)
-    faces += geometry->scene->object[i].mesh.face_count;
-  w->small = faces < SMALL_SCENE;
-  for (size_t i = 0; i < lights; i++)
-    w->hidden[i] = abbe_lamp_is_hidden(geometry, &geometry->scene->light[i]);
-  memset(w->batch, 0, sizeof *w->batch);
-  memset(w->next, 0, sizeof *w->next);
-  w->inner->count = 0;
-  abbe_ray_prepare(w->batch->ray, PACKETS);
-  abbe_ray_prepare(w->next->ray, PACKETS);
-  *out = w;
-  return ABBE_OK;
-}
-
-void abbe_light_walk_free(abbe_light_walk *walk) {
-  if (walk == NULL) return;
-  free(walk->batch);
-  free(walk->next);
-  free(walk->inner);
-  abbe_ray_record_free(&walk->record);
-  free(walk->hidden);
-  free(walk);
-}
-
-abbe_light_walk_room *abbe_light_walk_get_room(abbe_light_walk *walk) {
-  return &walk->room;
-}
-
-uint64_t abbe_light_walk_rays(const abbe_light_walk *walk) {
-  return walk->rays;
-}
-
-uint64_t abbe_light_walk_lamp_rays(const abbe_light_walk *walk) {
-  return walk->lamp_rays.traced;
-}
-
-void abbe_light_walk_split(abbe_light_walk *walk, unsigned interfaces) {
-  walk->splits = interfaces & ((1u << ABBE_PHOTON_SPLITS) - 1);
-}
-
-void abbe_light_walk_for_map(abbe_light_walk *walk, bool map) {
-  walk->for_map = map;
-}
-
-void abbe_light_walk_watch(abbe_light_walk *walk, abbe_light_walk_stretch take, void *user) {
-  walk->take = take;
-  walk->watcher = user;
-}
-
-void abbe_light_walk_keep(abbe_light_walk *walk, size_t packets) {
-  abbe_ray_record_free(&walk->record);
-  abbe_ray_record_make(packets, &walk->record);
-}
-
-bool abbe_light_walk_replay(abbe_light_walk *w, double *seconds, uint64_t *rays) {
-  return abbe_ray_record_replay(&w->record, w->g->embree, seconds, rays);
-}
 
 /* ---- one bounce of sixteen paths ---- */
 
@@ -156,6 +35,7 @@ typedef struct packet {
   bool straight[LANES]; /* media of one index: no interface */
   bool crystal[LANES];  /* on either side, or the light is polarised */
   int film[LANES];      /* on the face, or -1 */
+  float rough[LANES];   /* how rough it is, by GGX's alpha; 0: smooth */
   float passes[LANES];  /* what it does not absorb */
   uint8_t wave[LANES];  /* that a path goes on as, in a crystal */
   float stokes[LANES][3];
@@ -187,6 +67,7 @@ static void meet_interface(const abbe_light_walk *w, const abbe_light_path *s, p
   abbe_media_cross(s->inside, hit->surface->index, entering, &p->before[k], &p->after[k]);
   int from = abbe_media_of(p->before[k]), to = abbe_media_of(p->after[k]);
   p->film[k] = abbe_media_film(w->media, from, to, hit);
+  p->rough[k] = abbe_media_roughness(w->media, from, to, hit);
   p->straight[k] = p->film[k] < 0 && abbe_media_same(w->media, from, to);
   p->crystal[k] =
       !p->straight[k] && (w->physics.polarised || abbe_media_is_crystal(w->media, from) ||
@@ -194,6 +75,21 @@ static void meet_interface(const abbe_light_walk *w, const abbe_light_path *s, p
   p->scatter.eta[k] = p->straight[k] ? 1
                                      : abbe_media_n(w->media, from, s->step, s->within) /
                                            abbe_media_n(w->media, to, s->step, s->within);
+}
+
+/* Whether haze turns the path before that; it goes on from there then. */
+static bool turns(run *r, const struct RTCRayHit16 *rays, size_t k, abbe_light_path *s) {
+  ray_batch *next = r->w->next;
+  float o[3], d[3];
+  if (!abbe_light_path_turn(&r->rules, r->w->media, s, rays, k, o, d, r->ledger)) return false;
+  if (!abbe_light_path_survives(&r->rules, s, r->ledger)) return true;
+  if (s->steps >= ABBE_INNER_MAX_STEPS) {
+    r->ledger->lost += (double)(s->y * s->flux);
+    return true;
+  }
+  abbe_ray_put(next->ray, next->count, o, d);
+  next->path[next->count++] = *s;
+  return true;
 }
 
 /* Lane k of a packet of rays that Embree has been through: where the path is, and what becomes of
@@ -207,6 +103,7 @@ static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, abb
     r->w->take(r->w->watcher, &stretch);
   }
   if (id == RTC_INVALID_GEOMETRY_ID && (first || s->inside != 0)) return first ? NOT_COUNTED : LOST;
+  if (abbe_haze_is(&r->w->media->haze) && turns(r, rays, k, s)) return NOT_COUNTED;
   const bool left = first || abbe_light_path_absorb(&r->rules, r->w->media, s, rays, k, r->ledger);
   if (id == RTC_INVALID_GEOMETRY_ID) return left ? MISSED : NOT_COUNTED;
   const abbe_surface *surface = &r->w->g->surface[id];
@@ -229,13 +126,17 @@ static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, abb
     return MIRRORED;
   }
   p->scatter.chance[k] = abbe_light_path_chance(&r->rules, s);
-  bool too_long = ++s->steps >= ABBE_INNER_MAX_STEPS;
   meet_interface(r->w, s, p, k);
-  return too_long ? LOST : left ? SCATTERS : NOT_COUNTED;
+  if (p->rough[k] > 0 && !s->frosted) r->ledger->frosted += (double)(s->y * s->flux);
+  s->frosted = s->frosted || p->rough[k] > 0;
+  return ++s->steps >= ABBE_INNER_MAX_STEPS ? LOST : left ? SCATTERS : NOT_COUNTED;
 }
 
-static bool is_split(const abbe_light_walk *w, const abbe_light_path *s) {
-  return s->steps <= ABBE_PHOTON_SPLITS && (w->splits >> (s->steps - 1u) & 1) != 0;
+/* Of a path at an interface that is lane k's. */
+static bool is_split(const abbe_light_walk *w, const packet *p, size_t k,
+                     const abbe_light_path *s) {
+  return !(p->rough[k] > 0) && s->steps <= ABBE_PHOTON_SPLITS &&
+         (w->splits >> (s->steps - 1u) & 1) != 0;
 }
 
 /* What the path carries on the branch that was chosen, or on one of both; false for no light. */
@@ -243,7 +144,7 @@ static bool take_branch(const packet *p, size_t k, bool split, abbe_light_path *
   const size_t interface = s->steps - 1u;
   const bool reflects = p->scatter.reflects[k] && !p->straight[k];
   const float share = p->straight[k] ? 0 : p->scatter.share[k];
-  const float part = reflects ? share : 1 - share;
+  const float part = p->rough[k] > 0 ? 1 : reflects ? share : 1 - share;
   if (!split) {
     if (interface < ABBE_PHOTON_SPLITS) s->chance[interface] = part;
     return true;
@@ -359,8 +260,8 @@ static void advance(run *r, const abbe_light_path *paths, size_t count, bool sec
       continue;
     }
     abbe_light_path s = paths[k];
-    const bool split = is_split(r->w, &s);
-    if (r->packet.film[k] >= 0 &&
+    const bool split = is_split(r->w, &r->packet, k, &s);
+    if ((r->packet.film[k] >= 0 || r->packet.rough[k] > 0) &&
         !abbe_light_path_pass(&r->rules, r->packet.passes[k], split, second, &s, r->ledger))
       continue;
     if ((second && !split) || !take_branch(&r->packet, k, split, &s)) continue;
@@ -374,15 +275,20 @@ static void scatter_packet(run *r, const abbe_light_path *paths, size_t count) {
   const abbe_media *m = r->w->media;
   const bool polarised = r->rules.physics.polarised;
   abbe_scatter_packet(&p->scatter);
-  for (size_t k = 0; (m->crystal != NULL || m->films.count > 0 || polarised) && k < count; k++) {
+  const bool plain = m->crystal == NULL && m->films.count == 0 && m->rough == NULL && !polarised;
+  for (size_t k = 0; !plain && k < count; k++) {
     const int from = abbe_media_of(p->before[k]), to = abbe_media_of(p->after[k]);
     abbe_wave_face face = {.from = from,
                            .to = to,
                            .film = p->film[k],
                            .entering = p->after[k] > p->before[k],
                            .wave = paths[k].wave,
+                           .rough = p->rough[k],
                            .stokes = polarised ? paths[k].stokes : NULL};
-    if (p->state[k] == SCATTERS && p->crystal[k])
+    if (p->state[k] == SCATTERS && p->rough[k] > 0)
+      p->wave[k] = abbe_light_path_roughen_face(&r->rules, m, &paths[k], &face, &p->scatter, k,
+                                                &p->passes[k], p->stokes[k]);
+    else if (p->state[k] == SCATTERS && p->crystal[k])
       p->wave[k] = abbe_light_path_bend(&r->rules, m, &paths[k], &face, &p->scatter, k,
                                         &p->passes[k], p->stokes[k]);
     else if (p->state[k] == SCATTERS && p->film[k] >= 0)
@@ -396,7 +302,7 @@ static void scatter(run *r, const abbe_light_path *paths, size_t count) {
   abbe_scatter *s = &r->packet.scatter;
   bool splits[LANES], any = false, scatters = false, mirrors = false;
   for (size_t k = 0; k < count; k++) {
-    splits[k] = r->packet.state[k] == SCATTERS && is_split(r->w, &paths[k]);
+    splits[k] = r->packet.state[k] == SCATTERS && is_split(r->w, &r->packet, k, &paths[k]);
     if (splits[k]) s->chance[k] = REFLECT;
     scatters = scatters || r->packet.state[k] == SCATTERS;
     mirrors = mirrors || r->packet.state[k] == MIRRORED;

@@ -26,6 +26,8 @@ typedef struct abbe_light_stretch {
   float within;
   uint32_t id, steps; /* number of the photon; interfaces met so far */
   int medium;         /* the refractor that it is in, or -1: the air */
+  bool turned;        /* a refractor's haze has scattered it before */
+  uint8_t wave;       /* in a crystal: which of its two */
 } abbe_light_stretch;
 
 /* Where a photon hit a receiver. */
@@ -56,7 +58,10 @@ typedef struct abbe_light_ledger {
                        reflected; 0 with full physics */
   double lost;      /* where single precision lost track of inside and outside, or the path was
                        longer than 10000 interfaces; the renderer has no such light */
-  double scattered; /* off its path by a medium, after its first refractor or mirror */
+  double scattered; /* off its path by a medium that scatters once, after its first refractor or
+                       mirror */
+  double turned;    /* the part of all that which a refractor's haze has scattered, once or more */
+  double frosted;   /* the part of all that which has met a rough face */
 } abbe_light_ledger;
 
 #endif

@@ -68,7 +68,7 @@ TEST(a_beam_is_seen_as_bright_as_it_is) {
     FREED abbe_shaft_photons *s = aligned_alloc(64, (sizeof *s + 63) / 64 * 64);
     memset(s, 0, sizeof *s);
     s->geometry = &g;
-    s->haze = &m.haze;
+    s->media = &m;
     s->camera = &camera;
     s->eye_medium = -1;
     s->seed = 4;

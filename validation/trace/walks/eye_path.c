@@ -1,0 +1,61 @@
+#include "validation/trace/walks/eye_shading.h"
+
+#include <string.h>
+
+/* From inside a solid: where the path leaves it. */
+static bool leave_solid(const abbe_geometry *g, const abbe_eye_path *p, abbe_hit *hit,
+                        float *length) {
+  int refractor = abbe_media_of(p->inside);
+  if (refractor < 0 || !abbe_solid_is(&g->solid[refractor])) return false;
+  *hit = (abbe_hit){.surface = &g->surface[g->refractor_object[refractor]]};
+  *length = abbe_solid_leave(&g->solid[refractor], p->o, p->d, hit->p, hit->n);
+  memcpy(hit->ng, hit->n, sizeof hit->ng);
+  return true;
+}
+
+bool abbe_eye_trace(const abbe_eye_context *c, const abbe_eye_path *p, abbe_hit *hit,
+                    float *length) {
+  c->out->rays++;
+  if (leave_solid(c->w->geometry, p, hit, length)) return true;
+  if (!abbe_geometry_hit(c->w->geometry, ABBE_GEOMETRY_ALL, p->o, p->d, INFINITY, hit))
+    return false;
+  float square = 0;
+  for (int k = 0; k < 3; k++) square += (hit->p[k] - p->o[k]) * (hit->p[k] - p->o[k]);
+  *length = sqrtf(square);
+  return true;
+}
+
+/* By the share that is turned on all of the way, at a place that the scattering draws; roulette
+ * takes what is faint. */
+bool abbe_eye_turn(const abbe_eye_context *c, abbe_eye_path *p, float length, float u,
+                   abbe_eye_path *turned) {
+  const abbe_media *m = c->w->media;
+  const abbe_haze *h = &m->haze;
+  const int medium = abbe_media_of(p->inside);
+  const float least = c->w->least_branch;
+  if (!abbe_haze_turns(h, medium) || !(length < INFINITY)) return false;
+  const float off = abbe_haze_scattering(h, medium, p->step, p->within);
+  const float whole = abbe_media_extinction(m, medium, p->step, p->within, p->d, p->wave);
+  const float part = -expm1f(-off * length);
+  *turned = *p;
+  p->branch *= 1 - part;
+  turned->branch *= part;
+  turned->share *= part;
+  if (turned->branch < least) {
+    if (!(u * least < turned->branch)) return false;
+    turned->share *= least / turned->branch;
+    turned->branch = least;
+  }
+  float random[4], density;
+  abbe_eye_random4(c, p->id ^ 0x7475726eu, p->steps, random);
+  const float t = abbe_haze_place(off, length, random[0], &density);
+  turned->share *= expf(-t * (whole - off));
+  for (int k = 0; k < 3; k++) turned->o[k] += t * p->d[k];
+  abbe_haze_turn(h, medium, p->d, random[1], random[2], turned->d);
+  turned->wave = random[3] < 0.5f;
+  turned->lobe = 0;
+  memset(turned->stokes, 0, sizeof turned->stokes);
+  turned->steps++;
+  turned->id = p->id * 0x9e3779b1u + 0x27d4eb2fu;
+  return true;
+}
