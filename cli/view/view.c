@@ -241,6 +241,7 @@ static abbe_result view_pictures(view_options *o, abbe_error *error) {
     if (result != ABBE_OK) break;
     abbe_command_note_part(o->picture[i], p->image.part);
     abbe_command_note_odd(o->picture[i], &p->odd, "shown as the brightest light there is");
+    if (p->space.assumed) abbe_command_note_space(o->picture[i]);
     if (p->note[0] != '\0') fprintf(stderr, "note: %s\n", p->note);
   }
   const abbe_view_app_desc desc = {.pictures = pictures, .ocio = o->ocio};
@@ -311,11 +312,11 @@ int abbe_command_view(int argc, char **argv) {
       "Left drag turns, middle drag or shift moves, the wheel goes nearer, right drag\n"
       "looks about, and w a s d q e fly meanwhile. Drag a ring to move a lamp or an\n"
       "object: shift upright, control tilts, g drops. Click for a pixel's spectrum.\n"
-      "b: rendered or traced, v: their difference, + -: exposure, control z and y: back\n"
-      "and forth, control s: keep, t: turntable.\n"
-      "Pictures (.exr, .hdr, .pic, .png): click for a pixel, drag for a region, right drag\n"
-      "moves, the wheel zooms, b: the other picture, v: their difference, c: false colours,\n"
-      "+ - and e: exposure, f: all of it, 1: pixel by pixel.\n\n"
+      "b: rendered or traced, v: their difference, + -: exposure, control z and y:\n"
+      "back and forth, control s: keep, t: turntable.\n"
+      "Pictures (.exr, .hdr, .pic, .png): click for a pixel, drag for a region, right\n"
+      "drag moves, the wheel zooms, b: the other picture, v: their difference,\n"
+      "c: false colours, + - e: exposure, f: all of it, 1: pixel by pixel.\n\n"
       "Examples:\n"
       "  abbe view scenes/gem.yaml\n"
       "  abbe view scenes/gem.yaml --set objects.gem.material=diamond --size 1200x800\n"

@@ -204,6 +204,8 @@ static void draw_file(abbe_view_session *app) {
                          : p->bands.kind == ABBE_SPECTRAL_REFLECTIVE ? "of a perfect white"
                          : unit != NULL                              ? unit
                                                                      : "W.m^-2.sr^-1");
+  if (p->space.text[0] != '\0')
+    abbe_view_panel_pair("space", "%s%s", p->space.text, p->space.assumed ? ", assumed" : "");
   if (p->encoded) abbe_ui_text(DIM, "encoded for a screen; its light is shown");
   if (p->note[0] != '\0') abbe_ui_text(WARM, p->note);
   if (p->odd.infinite + p->odd.nan > 0)
