@@ -6,6 +6,7 @@
 #include "library/lib_settings.h"
 #include "scenes/cuts/cut_file.h"
 #include "scenes/cuts/cut_polyhedron.h"
+#include "scenes/cuts/cut_stretch.h"
 #include "spectral/formats/material_import.h"
 #include "validation/measure/gem/gem_judgement.h"
 #include "validation/measure/gem/gem_maps.h"
@@ -21,7 +22,7 @@ struct abbe_lib_gem_report {
 
 typedef struct request {
   const char *table, *axis;
-  double width_m, min_nm, max_nm, head_rad, tilt_rad, step_rad, weld;
+  double width_m, min_nm, max_nm, head_rad, tilt_rad, step_rad, weld, crown_rad, pavilion_rad;
   size_t wavelengths, size, repeats, threads;
 } request;
 
@@ -46,6 +47,8 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
       ABBE_LIB_NUMBER("tilt_rad", &q->tilt_rad, 0, ABBE_PI / 2),
       ABBE_LIB_NUMBER("step_rad", &q->step_rad, ABBE_PI / 1800, ABBE_PI / 2),
       ABBE_LIB_NUMBER("weld", &q->weld, 1e-12, ABBE_CUT_MOST_WELD),
+      ABBE_LIB_NUMBER("crown_rad", &q->crown_rad, 0, ABBE_PI / 2),
+      ABBE_LIB_NUMBER("pavilion_rad", &q->pavilion_rad, 0, ABBE_PI / 2),
       ABBE_LIB_COUNT("wavelengths", &q->wavelengths, 1, 256),
       ABBE_LIB_COUNT("size", &q->size, 8, ABBE_GEM_MOST_SIDE),
       ABBE_LIB_COUNT("repeats", &q->repeats, 3, ABBE_GEM_MOST_REPEATS),
@@ -74,6 +77,17 @@ static void free_work(work *w) {
   abbe_cut_free(&w->cut);
 }
 
+/* The design at other angles. */
+static abbe_result recut(const request *q, work *w, abbe_error *error) {
+  const double degrees = 180 / ABBE_PI;
+  if (!(q->crown_rad > 0) && !(q->pavilion_rad > 0)) return ABBE_OK;
+  const abbe_result result = abbe_cut_stretch_to(&w->cut, &w->polyhedron, degrees * q->crown_rad,
+                                                 degrees * q->pavilion_rad, error);
+  if (result != ABBE_OK) return result;
+  abbe_cut_polyhedron_free(&w->polyhedron);
+  return abbe_cut_polyhedron_make(&w->cut, q->weld, &w->polyhedron, error);
+}
+
 static abbe_result prepare(const request *q, const char *path, const char *material, work *w,
                            abbe_error *error) {
   const abbe_illuminant d65 = {0};
@@ -81,6 +95,7 @@ static abbe_result prepare(const request *q, const char *path, const char *mater
   const char *found = abbe_library_shipped_find(path, place, sizeof place);
   abbe_result result =
       abbe_cut_file_read_stone(found, q->weld, &w->cut, &w->polyhedron, NULL, error);
+  if (result == ABBE_OK) result = recut(q, w, error);
   if (result == ABBE_OK) result = abbe_material_table_load(q->table, &w->table, error);
   if (result == ABBE_OK)
     result = abbe_material_table_find(&w->table, material, &w->material, error);

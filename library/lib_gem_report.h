@@ -21,7 +21,8 @@ typedef struct abbe_lib_gem_report abbe_lib_gem_report;
  * mm), wavelengths (16), min_nm, max_nm (380, 780), head_rad (half angle of the head's shadow, 15
  * degrees), tilt_rad (to either side, 30 degrees; 0: not tilted, and no fire), step_rad (2
  * degrees), size (a side of the maps, 96), repeats (4), threads, weld, axis (of a crystal: X,Y,Z,
- * and of three indices its z and x; 0,0,1). progress may be NULL. ABBE_NOT_FOUND, ABBE_IO,
+ * and of three indices its z and x; 0,0,1), crown_rad and pavilion_rad (angles of the main facets,
+ * meets kept; 0: the design's own). progress may be NULL. ABBE_NOT_FOUND, ABBE_IO,
  * ABBE_PARSE, ABBE_GEOMETRY, ABBE_OUT_OF_RANGE, ABBE_UNSUPPORTED for a metal, ABBE_CANCELLED,
  * ABBE_NO_MEMORY. */
 abbe_result abbe_lib_gem_report_make(const char *path, const char *material,

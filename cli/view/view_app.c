@@ -26,6 +26,7 @@ abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc
                              .volume_path = desc->volume_path,
                              .volume = desc->volume,
                              .inspection = {.pictures = desc->pictures},
+                             .judge = {.wake = desc->wake},
                              .seen_s = -1};
   if (desc->pictures != NULL) {
     const abbe_result shown = abbe_view_inspect_begin(app, error);
@@ -59,6 +60,7 @@ void abbe_view_app_end(abbe_view_session *app) {
     abbe_view_worker_free(app->desk[i].worker);
     app->desk[i].worker = NULL;
   }
+  abbe_view_judge_end(app);
   abbe_view_painter_free(app->painter);
   abbe_view_screen_free(&app->screen);
   abbe_ui_free();
@@ -427,6 +429,7 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
   look_at_files(app, now_s);
   take_results(app);
   give(app, now_s);
+  abbe_view_judge_frame(app);
   await_moving(app, now_s);
   if (s->picked) abbe_view_probe_make(&app->pictures, s->pixel, &app->probe);
   if (abbe_view_asks_has_spot(app)) abbe_view_probe_take_spot(&app->probe, app->passes, &app->spot);
@@ -474,7 +477,7 @@ bool abbe_view_app_painted(const abbe_view_session *app) {
 bool abbe_view_app_rests(abbe_view_session *app, double now_s) {
   abbe_view_request request;
   if (app->inspection.pictures != NULL) return abbe_view_app_painted(app);
-  if (is_stale(app)) return false;
+  if (is_stale(app) || !abbe_view_judge_rests(app)) return false;
   for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++)
     if (!abbe_view_worker_idle(app->desk[i].worker)) return false;
   return !abbe_view_asks_want(app, &request) && !abbe_view_turn_wants(app, &request) &&

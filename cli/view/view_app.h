@@ -55,6 +55,18 @@ void abbe_view_asks_take(abbe_view_session *session, abbe_view_result *result);
 /* The session's spectrum, if there is one, is that of the picked pixel as it is seen now. */
 bool abbe_view_asks_has_spot(const abbe_view_session *session);
 
+/* Light return, ISO and windows of the scene's first designs (`shape: cut`) at the angles that
+ * their sliders have, as the library's gem report has them. */
+
+/* Takes what has been judged, and begins what is to be judged next. */
+void abbe_view_judge_frame(abbe_view_session *session);
+void abbe_view_judge_end(abbe_view_session *session);
+/* Nothing is judged and nothing is left to be. */
+bool abbe_view_judge_rests(const abbe_view_session *session);
+/* What is known of the outline's object; NULL: nothing. */
+const abbe_view_judged *abbe_view_judge_of(const abbe_view_session *session,
+                                           const abbe_view_object *object);
+
 /* What is drawn over the picture: handles, the picked pixel, and what feeds that. */
 
 /* Between abbe_ui_begin and the panel. */

@@ -122,10 +122,15 @@ static void choose_material(abbe_view_session *app, const abbe_view_object *obje
 /* What it is made of, and its proportions. */
 static void draw_object(abbe_view_session *app, const abbe_view_object *object, bool one_of_many,
                         double now_s) {
+  static const char *const numbers[ABBE_VIEW_JUDGED_NUMBERS] = {"light return", "ISO", "window"};
+  const abbe_view_judged *judged = abbe_view_judge_of(app, object);
   abbe_ui_scope_begin(object->key);
   choose_material(app, object, now_s);
   for (size_t k = 0; k < object->value_count; k++)
     slide(app, &object->value[k], one_of_many ? object->name : "", false, now_s);
+  for (int k = 0; judged != NULL && k < ABBE_VIEW_JUDGED_NUMBERS; k++)
+    abbe_view_panel_pair(numbers[k], "%.1f %% \u00b1 %.1f", 100 * judged->value[k],
+                         100 * judged->error[k]);
   abbe_ui_scope_end();
 }
 

@@ -12,6 +12,8 @@
 #include "cli/view/work/view_scene.h"
 #include "cli/view/work/view_worker.h"
 
+#include <pthread.h>
+
 #define ABBE_VIEW_PANEL_WIDTH 340
 #define ABBE_VIEW_MOST_SCENES 64
 #define ABBE_VIEW_TIMED 256
@@ -45,6 +47,26 @@ typedef struct abbe_view_inspection {
   unsigned char *pixels;       /* of the window, */
   size_t size[2];              /* so many */
 } abbe_view_inspection;
+enum { ABBE_VIEW_MOST_JUDGED = 4, ABBE_VIEW_JUDGED_LONGEST = 4096 };
+enum { ABBE_VIEW_RETURN, ABBE_VIEW_ISO, ABBE_VIEW_WINDOW, ABBE_VIEW_JUDGED_NUMBERS };
+
+/* A design as light judges it. */
+typedef struct abbe_view_judged {
+  char key[ABBE_VIEW_KEY];                /* of its object */
+  char request[ABBE_VIEW_JUDGED_LONGEST]; /* what was judged */
+  size_t side;                            /* pixels a side; 0: nothing was */
+  double value[ABBE_VIEW_JUDGED_NUMBERS]; /* shares of 1, and standard errors; NaN: cannot be */
+  double error[ABBE_VIEW_JUDGED_NUMBERS];
+} abbe_view_judged;
+
+typedef struct abbe_view_judge {
+  pthread_t thread; /* while begun: makes */
+  bool begun;
+  volatile int done;
+  size_t place; /* index of judged[] that it is for */
+  abbe_view_judged made;
+  void (*wake)(void);
+} abbe_view_judge;
 
 typedef struct abbe_view_session {
   abbe_view_inspection inspection;
@@ -97,7 +119,9 @@ typedef struct abbe_view_session {
   double latency_ms;               /* and from the first one that it showed to it */
   uint64_t obsolete;               /* the last change that ended a rest; 0: it is shown */
   double obsolete_s, cancel_ms;    /* when it came; and how long until a picture showed it, */
-  double stop_ms;        /* what was made for the one before took to stop; the last times */
+  double stop_ms; /* what was made for the one before took to stop; the last times */
+  abbe_view_judge judge;
+  abbe_view_judged judged[ABBE_VIEW_MOST_JUDGED];
   size_t turn_frame;     /* frame of the turntable, from 1; 0: it stands */
   uint64_t turn_serial;  /* what it turns */
   bool keys;             /* the list of keys is open */

@@ -39,6 +39,27 @@ TEST(shares_add_up) {
   abbe_lib_gem_report_free(quartz);
 }
 
+/* Its own angles change nothing; a flat pavilion is a window. */
+TEST(angles_are_others) {
+  static const char *const own[] = {"size=16",
+                                    "repeats=3",
+                                    "wavelengths=2",
+                                    "tilt_rad=0",
+                                    "crown_rad=0.602138592",
+                                    "pavilion_rad=0.711221671"};
+  static const char *const flat[] = {"size=16", "repeats=3", "wavelengths=2", "tilt_rad=0",
+                                     "pavilion_rad=0.35"};
+  abbe_lib_gem_report *as_it_is = judged("quartz"), *same = NULL, *window = NULL;
+  OK(abbe_lib_gem_report_make(design, "quartz", own, 6, NULL, NULL, &same, &error));
+  OK(abbe_lib_gem_report_make(design, "quartz", flat, 5, NULL, NULL, &window, &error));
+  const double is = number_of(as_it_is, "area_window");
+  assert_near(number_of(same, "return"), number_of(as_it_is, "return"), 1e-3);
+  assert_true(number_of(window, "area_window") > is + 0.1);
+  abbe_lib_gem_report_free(as_it_is);
+  abbe_lib_gem_report_free(same);
+  abbe_lib_gem_report_free(window);
+}
+
 TEST(a_crystal_lies_as_it_is_laid) {
   static const char *const lying[] = {"size=16", "repeats=3", "wavelengths=2", "tilt_rad=0",
                                       "axis=1,0,0"};

@@ -10,7 +10,8 @@
 
 /* By the words of its record; makers' catalogues have glasses alone. */
 static bool is_glass(const abbe_material *m) {
-  static const char *const words[] = {" glass", " crown", " flint", "Flint", " water", "Acrylic", "Air"};
+  static const char *const words[] = {" glass", " crown",  " flint", "Flint",
+                                      " water", "Acrylic", "Air"};
   bool is = m->catalogue.code != NULL;
   for (size_t i = 0; i < sizeof words / sizeof *words && m->description != NULL; i++)
     is = is || strstr(m->description, words[i]) != NULL;
@@ -19,7 +20,7 @@ static bool is_glass(const abbe_material *m) {
 
 /* By the wavelengths of the primaries of Rec.709, as abbe_absorption_colour has them. */
 static unsigned colour_of(const abbe_material *m) {
-  static const double nm[3] = {611.4, 549.1, 464.2}, path_m = 0.01;
+  static const double nm[3] = {611.4, 549.1, 464.2}, path_m = 0.005;
   double colour[3] = {1, 1, 1}, n, k;
   unsigned out = 0;
   if (m->attenuation != NULL) abbe_absorption_colour(m->attenuation, path_m, colour);

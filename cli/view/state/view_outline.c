@@ -295,6 +295,7 @@ static void make_object(abbe_yaml *yaml, abbe_yaml_node list, size_t i, const ab
   if (object == NULL) return;
   find_bounds(object, count, out);
   if (!read_transform(yaml, node, object, out)) return;
+  if (object->cut_deg[1] > 0 && object->material != NULL) out->design = strdup(object->mesh_path);
   key_of(yaml, "objects", list, i, out->key);
   snprintf(out->name, sizeof out->name, "%.79s", object->name);
   const abbe_material *material = object->mirror ? object->conductor : object->material;
@@ -322,6 +323,7 @@ abbe_result abbe_view_outline_make(const abbe_scene *scene, const char *text, si
     make_light(yaml, lights, i, scene, &out->light[out->light_count++]);
   for (size_t i = 0; i < abbe_yaml_count(yaml, objects); i++)
     if (out->object_count < ABBE_VIEW_MOST_OBJECTS) make_object(yaml, objects, i, scene, out);
+  snprintf(out->table, sizeof out->table, "%s", scene->table.path);
   out->surrounded = scene->environment != NULL;
   out->rotate = (abbe_view_value){.key = "environment.rotate",
                                   .label = "surroundings",
@@ -348,6 +350,7 @@ void abbe_view_outline_free(abbe_view_outline *outline) {
   for (size_t i = 0; i < outline->object_count; i++) {
     free(outline->object[i].before);
     free(outline->object[i].own_before);
+    free(outline->object[i].design);
   }
   for (size_t i = 0; i < outline->stone_count; i++) free(outline->stone[i]);
   for (size_t i = 0; i < outline->metal_count; i++) free(outline->metal[i]);

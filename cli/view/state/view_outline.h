@@ -52,6 +52,7 @@ typedef struct abbe_view_object {
   bool fitted, centred, stands, sized;
   char *own_before; /* so by the file alone; NULL: not known */
   double own_translate[3], own_middle[3];
+  char *design; /* file of a design that it is cut by; NULL: it is none */
   size_t value_count;
   abbe_view_value value[ABBE_VIEW_MOST_VALUES];
 } abbe_view_object;
@@ -62,12 +63,13 @@ typedef struct abbe_view_outline {
   abbe_view_light light[ABBE_SCENE_MAX_LIGHTS];
   abbe_view_object object[ABBE_VIEW_MOST_OBJECTS];
   /* names of the scene's table of materials: those that are clear, stones before glasses and
-   * liquids, and metals; and their colours, 0xRRGGBB of sRGB: of white light after 1 cm of the one,
+   * liquids, and metals; and their colours, 0xRRGGBB of sRGB: of white light after 5 mm of the one,
    * reflected by the other */
   size_t glasses_from; /* the first of stone[] that is none */
   char *stone[ABBE_VIEW_MOST_STONES], *metal[ABBE_VIEW_MOST_STONES];
   unsigned stone_colour[ABBE_VIEW_MOST_STONES], metal_colour[ABBE_VIEW_MOST_STONES];
-  bool surrounded; /* an environment is there, with this value: */
+  char table[1024]; /* table of these */
+  bool surrounded;  /* an environment is there, with this value: */
   abbe_view_value rotate;
   abbe_view_value ambient;
 } abbe_view_outline;

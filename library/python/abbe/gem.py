@@ -7,7 +7,8 @@ from ._native import Handle, Watch, call, decode, plain, required, settings
 from .picture import of_pointer
 
 Number = namedtuple("Number", "value error text")
-_ANGLES = {"head": "head_rad", "tilt": "tilt_rad", "step": "step_rad"}
+_ANGLES = {"head": "head_rad", "tilt": "tilt_rad", "step": "step_rad", "crown": "crown_rad",
+           "pavilion": "pavilion_rad"}
 
 
 class GemReport(Handle):
@@ -50,5 +51,5 @@ class GemReport(Handle):
 
 def gem_report(path, material, **how):
     """Judges a design (.asc, .gem, .gcs) in a stone: tilt, head and step in degrees (tilt=0: not
-    tilted, and no fire), width in m, wavelengths, size, repeats, table."""
+    tilted, and no fire), crown and pavilion (main angles, in degrees), width in m, wavelengths, size, repeats, table."""
     return GemReport(path, material, **how)

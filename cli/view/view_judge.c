@@ -1,0 +1,124 @@
+/* What designs return of light at the angles that their sliders have: coarsely at once, and better
+ * at rest, on a thread of its own. */
+#include "cli/view/view_app.h"
+
+#include "base/maths.h"
+#include "base/number.h"
+#include "library/lib_gem_report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { COARSE = 24, FINE = 96, MOST_LINES = 16 };
+
+static const char *const numbers[ABBE_VIEW_JUDGED_NUMBERS] = {"return", "gemray_iso",
+                                                              "area_window"};
+
+/* What a slider of that name is at; 0: there is none. */
+static double value_of(const abbe_view_document *now, const abbe_view_object *object,
+                       const char *name) {
+  for (size_t i = 0; i < object->value_count; i++) {
+    const abbe_view_value *v = &object->value[i];
+    const char *set = abbe_view_document_value(now, v->key), *end;
+    double value = v->value;
+    if (strcmp(strrchr(v->key, '.') + 1, name) != 0) continue;
+    if (set != NULL) abbe_number_read(set, &end, &value);
+    return value;
+  }
+  return 0;
+}
+
+/* The request, a line each: path, material, settings. False for what is no design of a stone. */
+static bool request_of(const abbe_view_session *session, const abbe_view_object *object,
+                       char out[ABBE_VIEW_JUDGED_LONGEST]) {
+  const abbe_view_document *now = abbe_view_history_now(&session->state.history);
+  char key[ABBE_VIEW_KEY + 16];
+  if (object->design == NULL) return false;
+  snprintf(key, sizeof key, "%s.material", object->key);
+  const char *set = abbe_view_document_value(now, key);
+  const double turn = ABBE_PI / 180, width = value_of(now, object, "width");
+  const int n = abbe_number_format(
+      out, ABBE_VIEW_JUDGED_LONGEST,
+      "%s\n%s\ntable=%s\nwidth_m=%.6g\ncrown_rad=%.6g\npavilion_rad=%.6g", object->design,
+      set != NULL && strchr("'\"", set[0]) == NULL ? set : object->material,
+      session->state.outline.table, width > 0 ? width : 0.0065,
+      turn * value_of(now, object, "crown"), turn * value_of(now, object, "pavilion"));
+  return n > 0 && n < ABBE_VIEW_JUDGED_LONGEST;
+}
+
+/* The next thing to be judged, and its place. */
+static bool find_next(const abbe_view_session *session, abbe_view_judged *out, size_t *place) {
+  const abbe_view_outline *o = &session->state.outline;
+  *place = 0;
+  for (size_t i = 0; i < o->object_count && *place < ABBE_VIEW_MOST_JUDGED; i++) {
+    if (!request_of(session, &o->object[i], out->request)) continue;
+    const abbe_view_judged *has = &session->judged[*place];
+    const bool same = strcmp(has->request, out->request) == 0;
+    out->side = same ? FINE : COARSE;
+    snprintf(out->key, sizeof out->key, "%s", o->object[i].key);
+    if (!same || (has->side < FINE && session->state.refine.stage >= ABBE_VIEW_BALANCED))
+      return true;
+    ++*place;
+  }
+  return false;
+}
+
+/* A design that cannot be judged has no numbers. */
+static void *judge(void *user) {
+  abbe_view_judge *j = user;
+  abbe_view_judged *out = &j->made;
+  char text[ABBE_VIEW_JUDGED_LONGEST], size[32], *line[MOST_LINES], *rest = text;
+  size_t count = 0;
+  abbe_lib_gem_report *report = NULL;
+  memcpy(text, out->request, sizeof text);
+  while (count < MOST_LINES - 4 && (line[count] = strtok_r(rest, "\n", &rest)) != NULL) count++;
+  snprintf(size, sizeof size, "size=%zu", out->side);
+  char few[] = "wavelengths=5", once[] = "tilt_rad=0", one[] = "threads=1";
+  line[count++] = size;
+  line[count++] = once;
+  line[count++] = one;
+  if (out->side == COARSE) line[count++] = few;
+  for (int i = 0; i < ABBE_VIEW_JUDGED_NUMBERS; i++) out->value[i] = NAN;
+  if (abbe_lib_gem_report_make(line[0], line[1], (const char *const *)line + 2, count - 2, NULL,
+                               NULL, &report, NULL) == ABBE_OK)
+    for (size_t i = 0; abbe_lib_gem_report_name(report, i) != NULL; i++)
+      for (int k = 0; k < ABBE_VIEW_JUDGED_NUMBERS; k++)
+        if (strcmp(abbe_lib_gem_report_name(report, i), numbers[k]) == 0)
+          abbe_lib_gem_report_number(report, i, &out->value[k], &out->error[k], NULL);
+  abbe_lib_gem_report_free(report);
+  j->done = 1;
+  if (j->wake != NULL) j->wake();
+  return NULL;
+}
+
+void abbe_view_judge_end(abbe_view_session *session) {
+  if (session->judge.begun) pthread_join(session->judge.thread, NULL);
+  session->judge.begun = false;
+}
+
+void abbe_view_judge_frame(abbe_view_session *session) {
+  abbe_view_judge *j = &session->judge;
+  if (j->begun && j->done) {
+    abbe_view_judge_end(session);
+    session->judged[j->place] = j->made;
+  }
+  if (j->begun || !find_next(session, &j->made, &j->place)) return;
+  j->done = 0;
+  j->begun = pthread_create(&j->thread, NULL, judge, j) == 0;
+}
+
+bool abbe_view_judge_rests(const abbe_view_session *session) {
+  abbe_view_judged next;
+  size_t place;
+  return !session->judge.begun && !find_next(session, &next, &place);
+}
+
+const abbe_view_judged *abbe_view_judge_of(const abbe_view_session *session,
+                                           const abbe_view_object *object) {
+  for (size_t i = 0; i < ABBE_VIEW_MOST_JUDGED && object->design != NULL; i++)
+    if (strcmp(session->judged[i].key, object->key) == 0 && session->judged[i].side > 0 &&
+        isfinite(session->judged[i].value[0]))
+      return &session->judged[i];
+  return NULL;
+}
