@@ -430,6 +430,7 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
   take_results(app);
   give(app, now_s);
   abbe_view_judge_frame(app);
+  abbe_view_report_frame(app);
   await_moving(app, now_s);
   if (s->picked) abbe_view_probe_make(&app->pictures, s->pixel, &app->probe);
   if (abbe_view_asks_has_spot(app)) abbe_view_probe_take_spot(&app->probe, app->passes, &app->spot);
@@ -477,7 +478,7 @@ bool abbe_view_app_painted(const abbe_view_session *app) {
 bool abbe_view_app_rests(abbe_view_session *app, double now_s) {
   abbe_view_request request;
   if (app->inspection.pictures != NULL) return abbe_view_app_painted(app);
-  if (is_stale(app) || !abbe_view_judge_rests(app)) return false;
+  if (is_stale(app) || app->reports || !abbe_view_judge_rests(app)) return false;
   for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++)
     if (!abbe_view_worker_idle(app->desk[i].worker)) return false;
   return !abbe_view_asks_want(app, &request) && !abbe_view_turn_wants(app, &request) &&

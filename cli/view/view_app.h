@@ -63,6 +63,12 @@ void abbe_view_judge_frame(abbe_view_session *session);
 void abbe_view_judge_end(abbe_view_session *session);
 /* Nothing is judged and nothing is left to be. */
 bool abbe_view_judge_rests(const abbe_view_session *session);
+bool abbe_view_judge_has_design(const abbe_view_session *session);
+/* Keeps what is seen and begins KEEP-report.pdf, the report of the first design as it is cut now,
+ * by abbe gem retarget and report; a note says when it is there. Errors of abbe_view_keep;
+ * ABBE_INVALID_ARGUMENT where there is no design. */
+abbe_result abbe_view_report_begin(abbe_view_session *session, abbe_error *error);
+void abbe_view_report_frame(abbe_view_session *session);
 /* What is known of the outline's object; NULL: nothing. */
 const abbe_view_judged *abbe_view_judge_of(const abbe_view_session *session,
                                            const abbe_view_object *object);

@@ -4,11 +4,18 @@
 
 #include "base/maths.h"
 #include "base/number.h"
+#include "cli/view/view_keep.h"
 #include "library/lib_gem_report.h"
 
 #include <math.h>
+#include <spawn.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
 
 enum { COARSE = 24, FINE = 96, MOST_LINES = 16 };
 
@@ -29,19 +36,27 @@ static double value_of(const abbe_view_document *now, const abbe_view_object *ob
   return 0;
 }
 
+/* Not what was set in quotes, which is a name of no shipped material. */
+static void material_of(const abbe_view_document *now, const abbe_view_object *object,
+                        char out[ABBE_VIEW_NAME]) {
+  char key[ABBE_VIEW_KEY + 16];
+  snprintf(key, sizeof key, "%s.material", object->key);
+  const char *set = abbe_view_document_value(now, key);
+  snprintf(out, ABBE_VIEW_NAME, "%s",
+           set != NULL && strchr("'\"", set[0]) == NULL ? set : object->material);
+}
+
 /* The request, a line each: path, material, settings. False for what is no design of a stone. */
 static bool request_of(const abbe_view_session *session, const abbe_view_object *object,
                        char out[ABBE_VIEW_JUDGED_LONGEST]) {
   const abbe_view_document *now = abbe_view_history_now(&session->state.history);
-  char key[ABBE_VIEW_KEY + 16];
+  char material[ABBE_VIEW_NAME];
   if (object->design == NULL) return false;
-  snprintf(key, sizeof key, "%s.material", object->key);
-  const char *set = abbe_view_document_value(now, key);
+  material_of(now, object, material);
   const double turn = ABBE_PI / 180, width = value_of(now, object, "width");
   const int n = abbe_number_format(
       out, ABBE_VIEW_JUDGED_LONGEST,
-      "%s\n%s\ntable=%s\nwidth_m=%.6g\ncrown_rad=%.6g\npavilion_rad=%.6g", object->design,
-      set != NULL && strchr("'\"", set[0]) == NULL ? set : object->material,
+      "%s\n%s\ntable=%s\nwidth_m=%.6g\ncrown_rad=%.6g\npavilion_rad=%.6g", object->design, material,
       session->state.outline.table, width > 0 ? width : 0.0065,
       turn * value_of(now, object, "crown"), turn * value_of(now, object, "pavilion"));
   return n > 0 && n < ABBE_VIEW_JUDGED_LONGEST;
@@ -112,6 +127,96 @@ bool abbe_view_judge_rests(const abbe_view_session *session) {
   abbe_view_judged next;
   size_t place;
   return !session->judge.begun && !find_next(session, &next, &place);
+}
+
+/* ---- the report ---- */
+
+static const abbe_view_object *first_design(const abbe_view_session *session) {
+  const abbe_view_outline *o = &session->state.outline;
+  for (size_t i = 0; i < o->object_count; i++)
+    if (o->object[i].design != NULL) return &o->object[i];
+  return NULL;
+}
+
+static void write_option(FILE *out, const char *option, const char *text) {
+  fprintf(out, " %s ", option);
+  abbe_view_keep_quote(out, text);
+}
+
+static void write_number(FILE *out, const char *format, double value) {
+  char text[64];
+  abbe_number_format(text, sizeof text, format, value);
+  if (value > 0) fputs(text, out);
+}
+
+/* The design as it is cut now, and its report, by the program's own commands; NULL: no memory. */
+static char *report_command(const abbe_view_session *session, const char *pdf) {
+  const abbe_view_object *object = first_design(session);
+  const abbe_view_document *now = abbe_view_history_now(&session->state.history);
+  const double crown = value_of(now, object, "crown"), pavilion = value_of(now, object, "pavilion");
+  char cut[1100], png[1100], program[4096] = "abbe", material[ABBE_VIEW_NAME], *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  if (out == NULL) return NULL;
+  const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+  if (length > 0) program[length] = '\0';
+  abbe_view_keep_name(session, "-cut.asc", cut, sizeof cut);
+  abbe_view_keep_name(session, ".png", png, sizeof png);
+  material_of(now, object, material);
+  abbe_view_keep_quote(out, program);
+  write_option(out, "gem retarget -q", object->design);
+  write_number(out, " --crown %.9g", crown);
+  write_number(out, " --pavilion %.9g", pavilion);
+  write_option(out, "-o", cut);
+  fputs(" >/dev/null && ", out);
+  abbe_view_keep_quote(out, program);
+  write_option(out, "gem report -q", cut);
+  write_option(out, "--material", material);
+  if (strcmp(session->state.outline.table, "default") != 0)
+    write_option(out, "--table", session->state.outline.table);
+  write_number(out, " --width %.9gmm", 1e3 * value_of(now, object, "width"));
+  write_option(out, "--picture", png);
+  write_option(out, "-o", pdf);
+  fputs(" >/dev/null", out);
+  fclose(out);
+  return text;
+}
+
+abbe_result abbe_view_report_begin(abbe_view_session *session, abbe_error *error) {
+  char pdf[1100];
+  abbe_view_keep_name(session, "-report.pdf", pdf, sizeof pdf);
+  if (session->reports)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the report is being made; wait a moment");
+  if (first_design(session) == NULL)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a report is of a stone that is cut by a design ('shape: cut')");
+  abbe_result result = abbe_view_keep(session, error); /* the picture of its first page */
+  char *command = result == ABBE_OK ? report_command(session, pdf) : NULL;
+  char shell[] = "sh", option[] = "-c", *arguments[] = {shell, option, command, NULL};
+  if (result == ABBE_OK && (command == NULL || posix_spawn(&session->reporter, "/bin/sh", NULL,
+                                                           NULL, arguments, environ) != 0))
+    result = abbe_error_set(error, ABBE_IO, "no other program can be started for the report");
+  free(command);
+  if (result != ABBE_OK) return result;
+  session->reports = true;
+  snprintf(session->note, sizeof session->note, "%.900s is made, which takes a while", pdf);
+  return ABBE_OK;
+}
+
+void abbe_view_report_frame(abbe_view_session *session) {
+  char pdf[1100];
+  int status = 0;
+  if (!session->reports || waitpid(session->reporter, &status, WNOHANG) == 0) return;
+  abbe_view_keep_name(session, "-report.pdf", pdf, sizeof pdf);
+  session->reports = false;
+  snprintf(session->note, sizeof session->note,
+           status == 0 ? "kept %.900s" : "%.900s was not made; the terminal says why", pdf);
+}
+
+/* ---- what is known ---- */
+
+bool abbe_view_judge_has_design(const abbe_view_session *session) {
+  return first_design(session) != NULL;
 }
 
 const abbe_view_judged *abbe_view_judge_of(const abbe_view_session *session,

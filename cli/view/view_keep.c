@@ -25,8 +25,7 @@ typedef struct growing {
   FILE *stream;
 } growing;
 
-/* As a shell reads it back. */
-static void quote(FILE *out, const char *text) {
+void abbe_view_keep_quote(FILE *out, const char *text) {
   static const char plain[] =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=+-:";
   if (text[0] != '\0' && strspn(text, plain) == strlen(text)) {
@@ -92,14 +91,14 @@ static void write_outputs(const abbe_view_session *session, FILE *out) {
                {" --view ", session->view > 0 ? d.view : NULL}};
   abbe_view_keep_name(session, "-again.exr", name, sizeof name);
   fputs(" -o ", out);
-  quote(out, name);
+  abbe_view_keep_quote(out, name);
   abbe_view_keep_name(session, "-again.png", name, sizeof name);
   fputs(" --png ", out);
-  quote(out, name);
+  abbe_view_keep_quote(out, name);
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     if (texts[i].text == NULL) continue;
     fputs(texts[i].option, out);
-    quote(out, texts[i].text);
+    abbe_view_keep_quote(out, texts[i].text);
   }
   if (session->state.exposure == 0 && !has_exposure(session)) return;
   abbe_number_format(stops, sizeof stops, " --exposure %.9g", session->state.exposure);
@@ -125,12 +124,12 @@ static void write_studio(const abbe_studio *studio, FILE *out) {
   char width[ABBE_NUMBER_TEXT_SIZE + 16];
   for (size_t i = 0; i < studio->more_count; i++) {
     fputc(' ', out);
-    quote(out, studio->more[i]);
+    abbe_view_keep_quote(out, studio->more[i]);
   }
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     if (texts[i].text == NULL) continue;
     fputs(texts[i].option, out);
-    quote(out, texts[i].text);
+    abbe_view_keep_quote(out, texts[i].text);
   }
   if (!(studio->width_m > 0)) return;
   abbe_number_format(width, sizeof width, " --width %.9gmm", 1e3 * studio->width_m);
@@ -155,19 +154,19 @@ char *abbe_view_keep_command(const abbe_view_session *session) {
       (out.stream = open_memstream(&out.text, &out.size)) == NULL)
     return NULL;
   fputs("abbe render ", out.stream);
-  quote(out.stream, now->path);
+  abbe_view_keep_quote(out.stream, now->path);
   if (abbe_studio_is_stone(now->path) && now->studio != NULL) write_studio(now->studio, out.stream);
   if (session->materials != NULL) {
     fputs(" --materials ", out.stream);
-    quote(out.stream, session->materials);
+    abbe_view_keep_quote(out.stream, session->materials);
   }
   if (session->volume_path != NULL) {
     fputs(" --volume ", out.stream);
-    quote(out.stream, session->volume_path);
+    abbe_view_keep_quote(out.stream, session->volume_path);
   }
   for (size_t i = 0; i < now->set_count; i++) {
     fputs(" --set ", out.stream);
-    quote(out.stream, now->set[i]);
+    abbe_view_keep_quote(out.stream, now->set[i]);
   }
   fprintf(out.stream, " --size %zux%zu", d->width, d->height);
   for (size_t i = 0; i < sizeof settings / sizeof *settings; i++)

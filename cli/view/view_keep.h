@@ -5,6 +5,8 @@
 
 #include "cli/view/view_session.h"
 
+#include <stdio.h>
+
 #define ABBE_VIEW_KEEP_LONGEST 1000 /* bytes of a name, without an ending */
 
 /* Where the folder that the program was started in cannot be written to, unnamed files go to the
@@ -29,6 +31,8 @@ abbe_result abbe_view_keep_png(const abbe_view_session *session, const abbe_imag
 /* ABBE_INVALID_ARGUMENT where the target is a file that the scene is read from. */
 abbe_result abbe_view_keep_check(const abbe_view_session *session, const char *target,
                                  abbe_error *error);
+/* As a shell reads it back. */
+void abbe_view_keep_quote(FILE *out, const char *text);
 /* Whether two names are of one file that is there, by links too, or are the same name. */
 bool abbe_view_keep_same_file(const char *a, const char *b);
 

@@ -349,13 +349,16 @@ void abbe_view_panel_draw(abbe_view_session *app, double now_s) {
   abbe_ui_beside();
   if (abbe_ui_button("redo")) abbe_view_state_redo(s, now_s);
   abbe_ui_beside();
+  if (abbe_ui_button("keys")) app->keys = !app->keys;
   if (abbe_ui_button("keep") && abbe_view_keep(app, &error) != ABBE_OK)
     snprintf(app->note, sizeof app->note, "%s", error.text);
   abbe_ui_beside();
   if (abbe_ui_button("turntable") && abbe_view_turn_begin(app, &error) != ABBE_OK)
     snprintf(app->note, sizeof app->note, "%s", error.text);
-  abbe_ui_beside();
-  if (abbe_ui_button("keys")) app->keys = !app->keys;
+  if (abbe_view_judge_has_design(app)) abbe_ui_beside();
+  if (abbe_view_judge_has_design(app) && abbe_ui_button("report") &&
+      abbe_view_report_begin(app, &error) != ABBE_OK)
+    snprintf(app->note, sizeof app->note, "%s", error.text);
   abbe_ui_gap();
   if (s->picked && abbe_ui_section("Pixel", true)) draw_pixel(app);
   if (abbe_ui_section("Scene", true)) draw_scene(app, now_s);

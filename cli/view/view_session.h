@@ -13,6 +13,7 @@
 #include "cli/view/work/view_worker.h"
 
 #include <pthread.h>
+#include <sys/types.h>
 
 #define ABBE_VIEW_PANEL_WIDTH 340
 #define ABBE_VIEW_MOST_SCENES 64
@@ -122,6 +123,8 @@ typedef struct abbe_view_session {
   double stop_ms; /* what was made for the one before took to stop; the last times */
   abbe_view_judge judge;
   abbe_view_judged judged[ABBE_VIEW_MOST_JUDGED];
+  bool reports;          /* a report is made */
+  pid_t reporter;        /* by it */
   size_t turn_frame;     /* frame of the turntable, from 1; 0: it stands */
   uint64_t turn_serial;  /* what it turns */
   bool keys;             /* the list of keys is open */

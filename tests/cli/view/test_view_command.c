@@ -83,6 +83,20 @@ TEST(a_design_is_recut) {
   run_clears("rm cut.yaml step-square.asc");
 }
 
+/* Side by side; each is judged, and the report is of the first as it is cut now. */
+TEST(two_stones_and_a_report) {
+  run_must("cp \"$house\"/scenes/designs/step-square.asc a.asc && cp \"$house\"/scenes/designs/"
+           "brilliant-quartz.asc b.asc");
+  run_must("printf '%s\\n' 'wait moving' 'slide \"stone 1 crown angle\" 0.4' 'wait balanced' 'wait "
+           "rest' 'assert "
+           "light_return > 0.1' 'click report' 'wait rest' 'assert note contains k-report.pdf' > "
+           "a.txt");
+  run_must("\"$abbe\" view a.asc b.asc --material quartz --photons 16 --map 64 --wavelengths 3 "
+           "--last balanced --size 380x200 --keep k --script a.txt");
+  run_must("grep -q %%EOF k-report.pdf && \"$abbe\" gem info k-cut.asc > lines && test -s k.png");
+  run_clears("rm a.* b.asc k* lines");
+}
+
 TEST(what_is_shown_beside_the_picture) {
   run_must(VIEW "--last accurate --size 640x300 --script " SCRIPTS "shown.txt > said");
   /* pictures of which no two are alike */
