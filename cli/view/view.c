@@ -251,8 +251,13 @@ static abbe_result view_pictures(view_options *o, abbe_error *error) {
       while (pictures->look.entry + 1 < pictures->picture[0].count &&
              pictures->picture[0].entry[pictures->look.entry].kind != ABBE_INSPECT_SPECTRUM)
         pictures->look.entry++;
-    result = run(o, &desc, error);
+    const abbe_inspect_picture *p = &pictures->picture[0];
+    abbe_inspect_mix mix = {0};
+    result =
+        abbe_inspect_mix_make(p, &p->entry[pictures->look.entry], &pictures->look, &mix, error);
+    abbe_inspect_mix_free(&mix);
   }
+  if (result == ABBE_OK) result = run(o, &desc, error);
   if (pictures != NULL) abbe_inspect_free(pictures);
   free(pictures);
   abbe_spectral_options_free(&o->spectral);

@@ -99,6 +99,9 @@ static void go_to(inspection *i, size_t at) {
   if (at == i->at) return;
   i->pictures->other = i->at;
   i->look.difference = false;
+  const abbe_image *from = &i->pictures->picture[i->at].image,
+                   *to = &i->pictures->picture[at].image;
+  if (from->width != to->width || from->height != to->height) i->pictures->zoom = 0;
   i->at = at;
   i->stale = true;
 }

@@ -66,7 +66,7 @@ typedef struct abbe_inspect_picture {
   abbe_image image;
   abbe_spectral_channels bands;
   abbe_picture_space space;
-  char note[1024]; /* why its R, G, B are no colour; else "" */
+  char note[1024]; /* why its R, G, B, or its bands, are no colour; else "" */
   bool renamed;    /* its bands are called w420nm and the like: light in an unknown unit */
   bool encoded;    /* a PNG, whose light is 0 to 1 */
   size_t count;    /* of entries: */

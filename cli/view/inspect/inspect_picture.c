@@ -135,6 +135,18 @@ static bool find_stokes(const abbe_image *image, size_t s0, size_t channel[4]) {
   return image->channel[s0][0] == 'S' && channel[1] != absent && channel[2] != absent;
 }
 
+/* Bands that hold no light that the eye sees have no colour. */
+static void list_spectrum(abbe_inspect_picture *p) {
+  const abbe_inspect_entry entry = {.kind = ABBE_INSPECT_SPECTRUM};
+  abbe_inspect_mix mix = {0};
+  abbe_error why = {0};
+  if (abbe_inspect_mix_make(p, &entry, &(abbe_inspect_look){0}, &mix, &why) == ABBE_OK)
+    add(p, ABBE_INSPECT_SPECTRUM, "colour of the bands", NULL);
+  else
+    snprintf(p->note, sizeof p->note, "%s", why.text);
+  abbe_inspect_mix_free(&mix);
+}
+
 static abbe_result list_entries(abbe_inspect_picture *p, abbe_error *error) {
   const abbe_image *image = &p->image;
   size_t channel[3], stokes[4];
@@ -153,8 +165,7 @@ static abbe_result list_entries(abbe_inspect_picture *p, abbe_error *error) {
       else
         snprintf(p->note, sizeof p->note, "%s", why.text);
     }
-    if (layered == 0 && p->bands.count >= 2)
-      add(p, ABBE_INSPECT_SPECTRUM, "colour of the bands", NULL);
+    if (layered == 0 && p->bands.count >= 2) list_spectrum(p);
   }
   if (p->bands.count > 0) add(p, ABBE_INSPECT_BAND, "one band", NULL);
   if (p->bands.count > 0 && find_stokes(image, p->bands.channel[0], stokes)) {

@@ -62,11 +62,12 @@ static void take_channels(const abbe_image *image, abbe_inspect_probe *p) {
 
 /* What is shown if that is a colour, else of the bands, else of R, G, B. */
 static const abbe_inspect_entry *colour_of(const abbe_inspect *s, const abbe_inspect_picture *p) {
-  const abbe_inspect_entry *best = NULL;
-  if (p == &s->picture[s->at] && abbe_inspect_is_colour(p->entry[s->look.entry].kind))
-    return &p->entry[s->look.entry];
+  const abbe_inspect_entry *best = NULL, *shown = &s->picture[s->at].entry[s->look.entry];
+  const abbe_inspect_kind first =
+      abbe_inspect_is_colour(shown->kind) ? shown->kind : ABBE_INSPECT_SPECTRUM;
+  if (p == &s->picture[s->at] && shown->kind == first) return shown;
   for (size_t i = 0; i < p->count; i++) {
-    if (p->entry[i].kind == ABBE_INSPECT_SPECTRUM) return &p->entry[i];
+    if (p->entry[i].kind == first) return &p->entry[i];
     if (best == NULL && p->entry[i].kind == ABBE_INSPECT_COLOUR) best = &p->entry[i];
   }
   return best;

@@ -177,6 +177,15 @@ TEST(bands_of_another_name_are_light_without_a_unit) {
   assert_near(p.unit, 0, 0);
 }
 
+TEST(bands_that_no_eye_sees_have_no_colour) {
+  static const char *const names[] = {"S0.1000nm", "S0.1100nm"};
+  FILLED(abbe_inspect, s, open_picture(&s, 1, 1, 2, names, (const float[]){1, 2}));
+  assert_contains(s.picture[0].note, "hold no light that the eye sees");
+  assert_int_equal(s.picture[0].entry[0].kind, ABBE_INSPECT_BAND);
+  show(&s, 0, "one band", (abbe_inspect_look){.wavelength_nm = 1090});
+  assert_near(s.picture[0].most_shown, 2, 0);
+}
+
 TEST(a_region_has_its_mean_deviation_and_error) {
   static const char *const names[] = {"Z", "stderr.Z"};
   const float data[] = {1, 0.1F, 2, 0.1F, 3, 0.1F, 4, 0.1F, NAN, 0, 5, INFINITY};
