@@ -21,9 +21,9 @@ static double cost_of(const char *name) {
   static const struct {
     const char *name;
     double cost;
-  } costs[] = {{"pane", 1},   {"absorption", 1}, {"furnace", 1},    {"environment", 1},
-               {"mirror", 2}, {"medium", 1},     {"lamp", 1},       {"sphere", 4},
-               {"white", 2},  {"picture", 1},    {"convergence", 1}};
+  } costs[] = {{"pane", 1},        {"polarised", 1}, {"absorption", 1}, {"furnace", 1},
+               {"environment", 1}, {"mirror", 2},    {"medium", 1},     {"lamp", 1},
+               {"sphere", 4},      {"white", 2},     {"picture", 1},    {"convergence", 1}};
   for (size_t i = 0; i < sizeof costs / sizeof *costs; i++)
     if (strcmp(name, costs[i].name) == 0) return costs[i].cost;
   return 0.01;

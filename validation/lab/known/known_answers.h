@@ -32,6 +32,7 @@
   X(rainbow, "primary and secondary rainbows of water")                                            \
   X(rough, "rough faces of glass: what their first facet reflects and passes, and smooth ones")    \
   X(pane, "what slabs, of calcite too, reflect and pass with all inner reflections")               \
+  X(polarised, "polarised light: sheets, piles of plates, metals, tourmaline, a furnace")          \
   X(absorption, "Beer-Lambert: what absorbing slabs let pass")                                     \
   X(furnace, "a white furnace: glass in the same light from everywhere cannot be seen")            \
   X(environment,                                                                                   \

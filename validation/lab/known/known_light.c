@@ -148,6 +148,8 @@ abbe_result abbe_known_add_setting(abbe_known_run *run, const abbe_known_setting
   abbe_trace_desc desc = {
       .no_map = true, .space = ABBE_RGB_SPACE_XYZ, .width = setting->side, .height = setting->side};
   desc.physics.once = setting->once;
+  if (setting->lambda_nm > 0) abbe_known_narrow(setting->lambda_nm, &desc);
+  if (setting->polarised) desc.polarisation = ABBE_TRACE_POLARISATION_ON;
   const size_t passes = abbe_known_passes(run, setting->samples, &desc);
   double(*sum)[3] = calloc(passes, sizeof *sum), before = 0, mean = 0;
   abbe_result result = sum != NULL ? abbe_tracer_make(scene, &desc, &tracer, error)

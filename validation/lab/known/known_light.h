@@ -39,6 +39,8 @@ typedef struct abbe_known_setting {
   double slack;  /* that the value may be off beside noise */
   double useful; /* as in abbe_known_answer */
   uint64_t samples;
+  double lambda_nm;    /* narrow around it; 0: the whole range */
+  bool polarised;      /* paths carry the light's polarisation also without polarisers */
   size_t side;         /* pixels of the picture */
   bool once;           /* a medium scatters light once (physics.h) */
   const char *channel; /* whose mean over the picture is known; NULL: the flux that was met, W;
@@ -60,6 +62,9 @@ abbe_result abbe_known_sphere_setting(abbe_known_run *run, size_t index, bool wh
 /* The row of one pane of the groups `pane` and (absorbs) `absorption`; likewise. */
 abbe_result abbe_known_pane_setting(abbe_known_run *run, size_t index, bool absorbs,
                                     abbe_error *error);
+/* Panes in light that is followed as polarised, the first part of the group `polarised`, up to the
+ * share `to` of its work. */
+abbe_result abbe_known_sheets(abbe_known_run *run, double to, abbe_error *error);
 /* The rows of one picture of the group `picture` (0: under a beam, 1: under a point light, 2:
  * under a beam, through a pane). */
 abbe_result abbe_known_picture_setting(abbe_known_run *run, size_t index, abbe_error *error);

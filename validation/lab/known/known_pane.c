@@ -20,7 +20,8 @@
 typedef struct pane {
   const char *material;
   double lambda_nm, thickness, degrees, circle;
-  enum { PLAIN, CRYSTAL, COATED } kind; /* a crystal's axis is across the plane of incidence */
+  /* A crystal's axis is across the plane of incidence; the light's field across it or in it. */
+  enum { PLAIN, CRYSTAL, COATED, POLARISED, ACROSS, WITHIN } kind;
 } pane;
 
 static abbe_result load(const pane *p, abbe_scene *scene, abbe_error *error) {
@@ -36,12 +37,16 @@ static abbe_result load(const pane *p, abbe_scene *scene, abbe_error *error) {
   return abbe_known_scene(
       scene, error,
       "camera: {eye: [0, -9, 4], target: [0, 0, 0]}\n"
-      "lights: [{name: sun, kind: directional, direction: [%.17g, 0, %.17g], irradiance: 1}]\n"
+      "lights: [{name: sun, kind: directional, direction: [%.17g, 0, %.17g], irradiance: 1%s}]\n"
       "objects:\n"
       "- {name: pane, shape: box, size: [1, 1, %.17g], material: %s%s}\n"
       "- {name: below, shape: rectangle, width: 4, height: 4, reflectance: 0.5,\n"
       "   transform: [{translate: [0, 0, %.17g]}]}\n%s",
-      sin(angle), -cos(angle), p->thickness, p->material,
+      sin(angle), -cos(angle),
+      p->kind == ACROSS   ? ", polariser: {angle: 0}"
+      : p->kind == WITHIN ? ", polariser: {angle: 90}"
+                          : "",
+      p->thickness, p->material,
       p->kind == CRYSTAL  ? ", axis: [0, 1, 0]"
       : p->kind == COATED ? ", coating: {layers: [[1.38, 1]], quarter: 550}"
                           : "",
@@ -122,7 +127,17 @@ static abbe_result exact_of(const pane *p, const abbe_scene *scene, double *refl
     for (int k = 0; k < 2; k++) abbe_closed_form_film(&film, angle, k == 1, &r[k], &t);
     face = (r[0] + r[1]) / 2; /* from inside too: nothing is absorbed */
   }
-  abbe_closed_form_slab(face, tau, reflected, passed);
+  if (p->kind < POLARISED) {
+    abbe_closed_form_slab(face, tau, reflected, passed);
+    return ABBE_OK;
+  }
+  for (int across = 0; across < 2; across++) { /* a sheet passes the half that is one of them */
+    double r, t;
+    if ((p->kind == ACROSS && across == 0) || (p->kind == WITHIN && across == 1)) continue;
+    abbe_closed_form_slab(polarised(angle, n, across), tau, &r, &t);
+    *reflected += r / 2;
+    *passed += t / 2;
+  }
   return ABBE_OK;
 }
 
@@ -138,6 +153,7 @@ static abbe_result add_share(abbe_known_run *run, const pane *p, bool reflected,
   double r = 0, t = 0, mean = 0, spread = 0;
   abbe_known_narrow(p->lambda_nm, &desc);
   size_t passes = abbe_known_passes(run, 1 << 22, &desc);
+  if (p->kind == POLARISED) desc.polarisation = ABBE_TRACE_POLARISATION_ON;
   double(*sum)[3] = calloc(passes, sizeof *sum);
   abbe_result result = sum != NULL ? load(p, &scene, error)
                                    : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for passes");
@@ -155,9 +171,11 @@ static abbe_result add_share(abbe_known_run *run, const pane *p, bool reflected,
                              .tolerance = abbe_known_sigmas(passes) * spread * scale + 1e-4,
                              .useful = 0.02 * (reflected ? r : t),
                              .reason = pane_reason};
+    static const char *const kinds[] = {"",          "",         " under MgF2", ", polarised",
+                                        ", s alone", ", p alone"};
     abbe_number_format(row.quantity, sizeof row.quantity, "%s%s, %g mm, %g nm, at %g degrees, %s",
-                       p->material, p->kind == COATED ? " under MgF2" : "", 1e3 * p->thickness,
-                       p->lambda_nm, p->degrees, reflected ? "reflected" : "passed");
+                       p->material, kinds[p->kind], 1e3 * p->thickness, p->lambda_nm, p->degrees,
+                       reflected ? "reflected" : "passed");
     result = abbe_known_add(run, row, error);
   }
   abbe_rings_free(&rings);
@@ -190,6 +208,13 @@ static const setting clear[] = {
     {{"calcite", D_LINE, 0.005, 60, 0.25, CRYSTAL}, false},
     {{"n-bk7", D_LINE, 0.005, 60, 0.25, COATED}, true},
 };
+static const setting sheets[] = {
+    {{"n-bk7", D_LINE, 0.005, 60, 0.25, POLARISED}, true},
+    {{"diamond", D_LINE, 0.005, 60, 0.25, POLARISED}, true},
+    {{"diamond", D_LINE, 0.005, 60, 0.25, POLARISED}, false},
+    {{"n-bk7", D_LINE, 0.005, 60, 0.25, ACROSS}, true},
+    {{"n-bk7", D_LINE, 0.005, 60, 0.25, WITHIN}, false},
+};
 static const setting absorbing[] = {
     {{"n-sf11", 546, 0.02, 0, 0.25, PLAIN}, false},
     {{"n-sf11", 436, 0.02, 0, 0.25, PLAIN}, false},
@@ -200,7 +225,11 @@ static const setting absorbing[] = {
     {{"tourmaline-green", 640, 0.02, 45, 0.25, CRYSTAL}, false},
 };
 
-enum { CLEAR = sizeof clear / sizeof *clear, ABSORBING = sizeof absorbing / sizeof *absorbing };
+enum {
+  CLEAR = sizeof clear / sizeof *clear,
+  SHEETS = sizeof sheets / sizeof *sheets,
+  ABSORBING = sizeof absorbing / sizeof *absorbing
+};
 
 abbe_result abbe_known_pane_setting(abbe_known_run *run, size_t index, bool absorbs,
                                     abbe_error *error) {
@@ -217,6 +246,14 @@ abbe_result abbe_known_pane(abbe_known_run *run, abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < CLEAR && result == ABBE_OK; i++)
     result = abbe_known_pane_setting(run, i, false, error);
+  return result;
+}
+
+abbe_result abbe_known_sheets(abbe_known_run *run, double to, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (int i = 0; i < SHEETS && result == ABBE_OK; i++)
+    result = add_share(run, &sheets[i].pane, sheets[i].reflected, to * i / SHEETS,
+                       to * (i + 1) / SHEETS, error);
   return result;
 }
 

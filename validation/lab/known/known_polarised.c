@@ -1,0 +1,224 @@
+/* Polarised light along paths from the camera: sheets, piles of plates, metals, tourmaline; and a
+ * furnace. Panes in a beam are known_pane.c's. */
+#include "base/maths.h"
+#include "base/number.h"
+#include "spectral/dispersion/dispersion.h"
+#include "validation/lab/known/forms/closed_form.h"
+#include "validation/lab/known/known_light.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define FIRST 0.5 /* the panes' part of the work */
+#define METAL "titanium"
+#define METAL_NM 550.0
+
+/* A panel of radiance 1 overhead, and behind it what the camera must have in view. */
+#define PANEL                                                                                      \
+  "lights: [{kind: rectangle, position: [0, 0, 9], direction: [0, 0, -1], width: 60, height: 60, " \
+  "radiance: 1}]\n"                                                                                \
+  "objects:\n- {name: lid, shape: rectangle, width: 60, height: 60, reflectance: 0,\n"             \
+  "   transform: [{translate: [0, 0, 12]}]}\n"
+
+static const char reason[] =
+    "as improbable as four standard errors, taken from the spread of the passes; and 2e-5 for "
+    "sampling of the spectrum and the angles of a pixel";
+
+/* Adds the mean radiance of the scene's picture at lambda_nm. */
+static abbe_result add(abbe_known_run *run, const char *what, double exact, double lambda_nm,
+                       const char *text, abbe_error *error) {
+  abbe_scene scene = {0};
+  const abbe_known_setting setting = {.what = what,
+                                      .unit = "W/(m2 sr)",
+                                      .reason = reason,
+                                      .exact = exact,
+                                      .slack = 2e-5,
+                                      .useful = fmax(0.02 * exact, 1e-3),
+                                      .samples = 1 << 16,
+                                      .lambda_nm = lambda_nm,
+                                      .polarised = true,
+                                      .side = 24,
+                                      .channel = "Y"};
+  abbe_result result = abbe_known_scene(&scene, error, "%s", text);
+  if (result == ABBE_OK) result = abbe_known_add_setting(run, &setting, &scene, FIRST, 1, error);
+  abbe_scene_free(&scene);
+  return result;
+}
+
+/* Malus: half of cos^2 of the angle between two sheets. */
+static abbe_result add_sheets(abbe_known_run *run, double degrees, abbe_error *error) {
+  char text[512], what[112];
+  const double c = cos(degrees / ABBE_KNOWN_DEGREES);
+  abbe_number_format(
+      text, sizeof text,
+      "camera: {eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 5, polariser: {angle: %g}}\n"
+      "lights: [{kind: rectangle, position: [0, 0, 0], direction: [0, 0, 1], width: 1, height: 1,\n"
+      "  radiance: 1, polariser: {angle: 25}}]\n"
+      "objects:\n- {name: floor, shape: rectangle, width: 1, height: 1, reflectance: 0.5,\n"
+      "   transform: [{translate: [0, 0, -1]}]}\n",
+      25 + degrees);
+  abbe_number_format(what, sizeof what, "two polarisers at %g degrees", degrees);
+  return add(run, what, c * c / 2, 0, text, error);
+}
+
+/* ---- a pile of plates at Brewster's angle ---- */
+
+/* What plates one behind another pass of light of one polarisation. */
+static double pile_passes(int plates, double r, double t) {
+  double reflected = 0, passed = 1;
+  for (int i = 0; i < plates; i++) {
+    const double between = 1 - reflected * r;
+    reflected = r + t * t * reflected / between;
+    passed *= t / between;
+  }
+  return passed;
+}
+
+/* Seen from below, against a sky of 1; sheet: the field across the plane of incidence (0), in it
+ * (1), or both (2). */
+static abbe_result add_pile(abbe_known_run *run, int plates, int sheet, abbe_error *error) {
+  static const char *const names[] = {"s", "p", "all"};
+  char text[2048], what[112];
+  abbe_scene scene = {0};
+  double n = 0, exact = 0, r, t;
+  abbe_result result =
+      abbe_known_scene(&scene, error,
+                       "camera: {eye: [0, 0, 9], target: [0, 0, 0], up: [0, 1, 0]}\n"
+                       "environment: {uniform: 1}\nobjects:\n- {name: a, shape: sphere, radius: 1, "
+                       "material: n-bk7}\n");
+  if (result == ABBE_OK)
+    result = abbe_material_n(scene.object[0].material, ABBE_LINE_D_NM, &n, error);
+  abbe_scene_free(&scene);
+  if (result != ABBE_OK) return result;
+  const double angle = atan(n);
+  int length = abbe_number_format(
+      text, sizeof text, "camera: {eye: [%.17g, 0, %.17g], target: [0, 0, 0], fov: 0.1%s}\n" PANEL,
+      -20 * sin(angle), -20 * cos(angle),
+      sheet == 0   ? ", polariser: {angle: 0}"
+      : sheet == 1 ? ", polariser: {angle: 90}"
+                   : "");
+  for (int i = 0; i < plates; i++)
+    length +=
+        abbe_number_format(text + length, sizeof text - (size_t)length,
+                           "- {name: plate%d, shape: box, size: [40, 40, 0.01], material: n-bk7,\n"
+                           "   transform: [{translate: [0, 0, %g]}]}\n",
+                           i, 0.02 * i);
+  for (int p = 0; p < 2; p++) {
+    const abbe_closed_film bare = {1, n, 0, n, 0};
+    double through;
+    if (sheet == 1 - p) continue;
+    abbe_closed_form_film(&bare, angle, p == 1, &r, &through);
+    abbe_closed_form_slab(r, 1, &r, &t);
+    exact += pile_passes(plates, r, t) / 2;
+  }
+  snprintf(what, sizeof what, "%d plate%s of n-bk7 at Brewster's angle pass, %s", plates,
+           plates > 1 ? "s" : "", names[sheet]);
+  return add(run, what, exact, ABBE_LINE_D_NM, text, error);
+}
+
+/* ---- two metal mirrors ---- */
+
+static int put_mirror(char *out, size_t size, int number, const double at[3], const double n[3]) {
+  return abbe_number_format(
+      out, size,
+      "- {name: mirror%d, shape: rectangle, width: 1, height: 1, mirror: " METAL ",\n"
+      "   transform: [{rotate: {axis: [%.17g, %.17g, 0], angle: %.17g}}, {translate: [%.17g, "
+      "%.17g, "
+      "%.17g]}]}\n",
+      number, -n[1], n[0], acos(n[2]) * ABBE_KNOWN_DEGREES, at[0], at[1], at[2]);
+}
+
+/* At 45 degrees p reflects the square of s [BornWolf1999, 14.2]. Off both the camera sees light
+ * that is the same from everywhere. */
+static abbe_result add_mirrors(abbe_known_run *run, bool crossed, abbe_error *error) {
+  const double c = sqrt(0.5), places[2][3] = {{0, 0, 0}, {0, 0, 4}};
+  const double normals[2][3] = {{-c, 0, c}, {crossed ? 0 : c, crossed ? c : 0, -c}};
+  char text[1024];
+  int length =
+      abbe_number_format(text, sizeof text,
+                         "camera: {eye: [-4, 0, 0], target: [0, 0, 0], fov: 0.1}\n"
+                         "background: 1\nlights: [{kind: point, position: [0, 90, 0], "
+                         "intensity: 1.0e-12}]\nobjects:\n- {name: floor, shape: rectangle, "
+                         "width: 1, height: 1, reflectance: 0,\n   transform: "
+                         "[{translate: [0, 0, -60]}]}\n");
+  for (int i = 0; i < 2; i++)
+    length += put_mirror(text + length, sizeof text - (size_t)length, i, places[i], normals[i]);
+  abbe_scene scene = {0};
+  double nk[2] = {0};
+  abbe_result result = abbe_known_scene(&scene, error, "%s", text);
+  if (result == ABBE_OK)
+    result = abbe_material_nk(scene.object[1].conductor, METAL_NM, &nk[0], &nk[1], error);
+  abbe_scene_free(&scene);
+  if (result != ABBE_OK) return result;
+  const double mean = abbe_closed_form_conductor(ABBE_PI / 4, nk[0], nk[1]);
+  const double s = (sqrt(1 + 8 * mean) - 1) / 2;
+  return add(run,
+             crossed ? "two mirrors of " METAL " at 45 degrees, crossed"
+                     : "two mirrors of " METAL " at 45 degrees, in one plane",
+             crossed ? s * s * s : (s * s + s * s * s * s) / 2, METAL_NM, text, error);
+}
+
+/* ---- tourmaline ---- */
+
+#define STONE "tourmaline-green"
+#define STONE_NM 640.0
+#define STONE_THICK 0.003
+
+/* Two plates, axes in their faces, straight on; nothing turns o into e. */
+static abbe_result add_tourmaline(abbe_known_run *run, bool crossed, abbe_error *error) {
+  char text[1024];
+  abbe_number_format(
+      text, sizeof text,
+      "camera: {eye: [0, 0, -20], target: [0, 0, 0], up: [0, 1, 0], fov: 0.1}\n" PANEL
+      "- {name: a, shape: box, size: [1, 1, %g], material: " STONE ", axis: [1, 0, 0]}\n"
+      "- {name: b, shape: box, size: [1, 1, %g], material: " STONE ", axis: [%s],\n"
+      "   transform: [{translate: [0, 0, 0.1]}]}\n",
+      STONE_THICK, STONE_THICK, crossed ? "0, 1, 0" : "1, 0, 0");
+  abbe_scene scene = {0};
+  double n[2], r[2], t[2];
+  abbe_result result = abbe_known_scene(&scene, error, "%s", text);
+  for (int wave = 0; wave < 2 && result == ABBE_OK; wave++) {
+    const abbe_material *m = scene.object[1].material;
+    result = abbe_material_n_along(m, 2 * wave, STONE_NM, &n[wave], error);
+    const double face = pow((n[wave] - 1) / (n[wave] + 1), 2);
+    const double per_m = abbe_material_attenuation_along(m, 2 * wave, STONE_NM);
+    abbe_closed_form_slab(face, exp(-per_m * STONE_THICK), &r[wave], &t[wave]);
+  }
+  abbe_scene_free(&scene);
+  if (result != ABBE_OK) return result;
+  double exact = 0;
+  for (int wave = 0; wave < 2; wave++) {
+    const int other = crossed ? 1 - wave : wave;
+    exact += t[wave] * t[other] / (1 - r[wave] * r[other]) / 2;
+  }
+  return add(run,
+             crossed ? "two plates of " STONE ", crossed" : "two plates of " STONE ", parallel",
+             exact, STONE_NM, text, error);
+}
+
+/* ---- the furnace ---- */
+
+static abbe_result add_furnace(abbe_known_run *run, const char *stone, abbe_error *error) {
+  char text[512], what[112];
+  snprintf(text, sizeof text,
+           "camera: {eye: [0.02, -0.4, 0.12], target: [0, 0, 0], fov: 6}\n"
+           "environment: {uniform: 1}\nobjects:\n"
+           "- {name: gem, shape: gem, sides: 6, girdle: 0.04, table: 0.024, crown: 0.013,\n"
+           "   pavilion: 0.03, material: %s}\n",
+           stone);
+  snprintf(what, sizeof what, "cut %s in even light", stone);
+  return add(run, what, 1, 0, text, error);
+}
+
+abbe_result abbe_known_polarised(abbe_known_run *run, abbe_error *error) {
+  static const double angles[] = {0, 30, 90};
+  static const char *const stones[] = {"diamond", "calcite", "topaz"};
+  abbe_result result = abbe_known_sheets(run, FIRST, error);
+  for (int i = 0; i < 3 && result == ABBE_OK; i++) result = add_sheets(run, angles[i], error);
+  for (int i = 0; i < 6 && result == ABBE_OK; i++)
+    result = add_pile(run, i < 3 ? 1 : 4, i % 3, error);
+  for (int i = 0; i < 2 && result == ABBE_OK; i++) result = add_mirrors(run, i == 1, error);
+  for (int i = 0; i < 2 && result == ABBE_OK; i++) result = add_tourmaline(run, i == 1, error);
+  for (int i = 0; i < 3 && result == ABBE_OK; i++) result = add_furnace(run, stones[i], error);
+  return result;
+}
