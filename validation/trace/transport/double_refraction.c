@@ -143,12 +143,8 @@ static void biaxial_ways(const abbe_media *m, const abbe_wave_face *face, uint32
                               face->film >= 0 ? &film : NULL, out);
 }
 
-void abbe_media_ways(const abbe_media *m, const abbe_wave_face *face, uint32_t step, float within,
-                     abbe_wave_ways *out) {
-  if (face->stokes != NULL) {
-    abbe_polarised_ways(m, face, step, within, out);
-    return;
-  }
+void abbe_unpolarised_ways(const abbe_media *m, const abbe_wave_face *face, uint32_t step,
+                           float within, abbe_wave_ways *out) {
   if (face->film >= 0 || abbe_media_is_biaxial(m, face->from) ||
       abbe_media_is_biaxial(m, face->to)) {
     biaxial_ways(m, face, step, within, out);

@@ -82,9 +82,9 @@ int abbe_wave_ways_rename(const abbe_biaxial *medium, int wave);
 /* Shares that add up to 1, of which the first `reflected` ways are reflected, and their sum. */
 void abbe_wave_ways_balance(size_t reflected, bool film, abbe_wave_ways *out);
 
-/* abbe_media_ways of polarised light. */
-void abbe_polarised_ways(const abbe_media *media, const abbe_wave_face *face, uint32_t step,
-                         float within, abbe_wave_ways *out);
+/* abbe_media_ways of light that counts as unpolarised. */
+void abbe_unpolarised_ways(const abbe_media *media, const abbe_wave_face *face, uint32_t step,
+                           float within, abbe_wave_ways *out);
 
 /* Off a mirror from unit d to unit out: turns the light's stokes, and returns its share over that
  * of unpolarised light. A mirror of one reflectance counts as an ideal conductor. */

@@ -2,6 +2,7 @@
 
 #include "base/maths.h"
 #include "colorimetry/upsampling.h"
+#include "validation/trace/transport/lamp_place.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -180,4 +181,34 @@ void abbe_environment_light_ray(const abbe_environment_light *e, const double u[
   size_t count = balls_on(e, p, d);
   const float flux = (float)e->area / (pdf * (float)(count > 0 ? count : 1));
   for (int k = 0; k < 3; k++) rgb[k] *= flux;
+}
+
+/* ---- how bright lights are ---- */
+
+static void count_in(abbe_light_range *r, double radiance) {
+  if (!(radiance > 0)) return;
+  r->least = fmin(r->least, radiance);
+  r->greatest = fmax(r->greatest, radiance);
+}
+
+static double radiance_of(const abbe_geometry *g, const abbe_light *light) {
+  double square = 1, power = light->power;
+  if (light->kind == ABBE_LIGHT_DISK) power *= 3.14159 * light->radius * light->radius;
+  if (light->kind == ABBE_LIGHT_RECTANGLE) power *= abbe_light_area(light);
+  if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
+    square = 0;
+    for (int k = 0; k < 3; k++) square += pow(light->position[k] - g->origin[k], 2);
+  }
+  return power / fmax(square, 1e-6 * g->unit * g->unit);
+}
+
+void abbe_light_range_find(const abbe_geometry *geometry, abbe_light_range *out) {
+  const abbe_scene *scene = geometry->scene;
+  *out = (abbe_light_range){.least = INFINITY};
+  count_in(out, scene->ambient);
+  count_in(out, scene->background);
+  if (scene->environment != NULL) count_in(out, scene->environment->luminance);
+  for (size_t l = 0; l < scene->light_count; l++)
+    count_in(out, radiance_of(geometry, &scene->light[l]));
+  if (!(out->greatest > 0)) *out = (abbe_light_range){1, 1};
 }

@@ -211,8 +211,8 @@ static void leave_as_light(const meeting *m, int first, number comes[4][2], cons
   if (way != NULL) give(s, way->stokes);
 }
 
-void abbe_polarised_ways(const abbe_media *media, const abbe_wave_face *face, uint32_t step,
-                         float within, abbe_wave_ways *out) {
+static void polarised_ways(const abbe_media *media, const abbe_wave_face *face, uint32_t step,
+                           float within, abbe_wave_ways *out) {
   const frame f = frame_of(face->d);
   const bool crystal = abbe_media_is_crystal(media, face->from);
   double n[3], in[4] = {1, 1, 0, 0};
@@ -240,6 +240,14 @@ void abbe_polarised_ways(const abbe_media *media, const abbe_wave_face *face, ui
     if (side == 0) reflected = out->count;
   }
   abbe_wave_ways_balance(reflected, face->film >= 0, out);
+}
+
+void abbe_media_ways(const abbe_media *m, const abbe_wave_face *face, uint32_t step, float within,
+                     abbe_wave_ways *out) {
+  if (face->stokes != NULL)
+    polarised_ways(m, face, step, within, out);
+  else
+    abbe_unpolarised_ways(m, face, step, within, out);
 }
 
 /* ---- mirrors, bends and sheets ---- */
