@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "cli/view/view_app.h"
 #include "cli/view/view_keep.h"
+#include "colorimetry/spectral_picture/pixel_probe.h"
 #include "scenes/volume/caustic_volume.h"
 #endif
 
@@ -230,6 +231,22 @@ static abbe_result run(const view_options *o, const abbe_view_app_desc *desc, ab
   return abbe_view_window_run(desc, o->width, o->height, error);
 }
 
+/* The colour of the first picture's bands, with the sentences of `pixel`. */
+static abbe_result choose_spectrum(abbe_inspect *pictures, const view_options *o,
+                                   abbe_error *error) {
+  const abbe_inspect_picture *p = &pictures->picture[0];
+  const abbe_image_window all = p->image.display_window, first = {all.x0, all.y0, all.x0, all.y0};
+  abbe_pixel_probe probe;
+  size_t at = 0;
+  pictures->look.view = o->spectral.view;
+  const abbe_result result =
+      abbe_pixel_probe_make(&p->image, NULL, p->path, first, &o->spectral.view, &probe, error);
+  abbe_pixel_probe_free(&probe);
+  while (at < p->count && p->entry[at].kind != ABBE_INSPECT_SPECTRUM) at++;
+  if (at < p->count) pictures->look.entry = at;
+  return result;
+}
+
 /* What is wrong with a file is reported before there is a window. */
 static abbe_result view_pictures(view_options *o, abbe_error *error) {
   abbe_inspect *pictures = calloc(1, sizeof *pictures);
@@ -245,18 +262,7 @@ static abbe_result view_pictures(view_options *o, abbe_error *error) {
     if (p->note[0] != '\0') fprintf(stderr, "note: %s\n", p->note);
   }
   const abbe_view_app_desc desc = {.pictures = pictures, .ocio = o->ocio};
-  if (result == ABBE_OK) {
-    pictures->look.view = o->spectral.view;
-    if (o->spectral.given)
-      while (pictures->look.entry + 1 < pictures->picture[0].count &&
-             pictures->picture[0].entry[pictures->look.entry].kind != ABBE_INSPECT_SPECTRUM)
-        pictures->look.entry++;
-    const abbe_inspect_picture *p = &pictures->picture[0];
-    abbe_inspect_mix mix = {0};
-    result =
-        abbe_inspect_mix_make(p, &p->entry[pictures->look.entry], &pictures->look, &mix, error);
-    abbe_inspect_mix_free(&mix);
-  }
+  if (result == ABBE_OK && o->spectral.given) result = choose_spectrum(pictures, o, error);
   if (result == ABBE_OK) result = run(o, &desc, error);
   if (pictures != NULL) abbe_inspect_free(pictures);
   free(pictures);

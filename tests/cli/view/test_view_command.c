@@ -232,6 +232,8 @@ TEST(pictures_are_looked_at) {
       "'/^Y/ { printf \"%.6g\\n\", $2 }' said > said.Y && diff is said.Y");
   run_must("! cmp -s colour.png bright.png");
   run_fails("\"$abbe\" view bands.exr --script a.txt --lit-by moon", 1, "moon");
+  run_fails("\"$abbe\" view bands.exr --script a.txt --illuminant A", 1,
+            "does not say which light it was made with");
   run_must("head -c 300 bands.exr > cut.exr");
   run_fails("\"$abbe\" view bands.exr cut.exr --script a.txt", 1, "cut.exr");
   run_fails("\"$abbe\" view bands.webp --script a.txt", 1, ".exr, .hdr, .pic and .png");
