@@ -58,6 +58,13 @@ abbe_result abbe_error_set(abbe_error *error, abbe_result code, const char *form
 abbe_result abbe_error_set_list(abbe_error *error, abbe_result code, const char *prefix,
                                 const char *format, va_list arguments);
 
+/* Returns from the calling function with the result of the call unless that is ABBE_OK. */
+#define ABBE_TRY(...)                        \
+  do {                                       \
+    const abbe_result tried = (__VA_ARGS__); \
+    if (tried != ABBE_OK) return tried;      \
+  } while (0)
+
 #ifdef __cplusplus
 }
 #endif

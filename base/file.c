@@ -367,8 +367,7 @@ abbe_result abbe_file_writer_end(abbe_file_writer *writer, abbe_result result, a
 
 abbe_result abbe_file_write(const char *path, const void *data, size_t size, abbe_error *error) {
   abbe_file_writer writer;
-  abbe_result result = abbe_file_writer_open(&writer, path, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_file_writer_open(&writer, path, error));
   if (size > 0) fwrite(data, 1, size, writer.stream); /* a short write shows in ferror */
   return abbe_file_writer_commit(&writer, error);
 }

@@ -249,12 +249,11 @@ static abbe_result report(const request *q, const abbe_file_comparison *c, abbe_
 
 static abbe_result compare(const request *q, abbe_error *error) {
   abbe_file_comparison c;
-  abbe_result result = abbe_file_comparison_make(&q->desc, &c, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_file_comparison_make(&q->desc, &c, error));
   for (int side = 0; side < 2; side++)
     abbe_command_note_part(c.path[side], c.field[side].header.part);
   abbe_command_note_part(c.mask_name, c.mask_part);
-  result = abbe_file_comparison_check(&c, q->tolerance, q->tolerance_count, error);
+  abbe_result result = abbe_file_comparison_check(&c, q->tolerance, q->tolerance_count, error);
   if (result == ABBE_OK && q->difference != NULL)
     result = abbe_file_comparison_draw(&c, q->difference, q->range, error);
   if (result == ABBE_OK) result = report(q, &c, error);

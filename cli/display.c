@@ -93,8 +93,7 @@ static abbe_result name_view(const request *r, char *out, size_t size, abbe_erro
   const abbe_display_desc *d = &r->screen.display;
   char *text = NULL, *rest = NULL;
   const size_t length = d->display ? strlen(d->display) : 0;
-  const abbe_result result = abbe_display_list(d->config, &text, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_display_list(d->config, &text, error));
   snprintf(out, size, "%s", d->display ? d->display : "its default");
   for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
     if (d->display && (strncmp(line, d->display, length) != 0 || line[length] != ' ')) continue;

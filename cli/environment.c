@@ -93,8 +93,7 @@ static abbe_result print(const request *r, const abbe_environment *e, const meas
 /* As the world sees them, turned. */
 static abbe_result make_image(const abbe_environment *e, abbe_image *out, abbe_error *error) {
   static const char *const names[] = {"R", "G", "B"};
-  abbe_result result = abbe_image_make(e->map.width, e->map.height, 3, names, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_image_make(e->map.width, e->map.height, 3, names, out, error));
   abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_REC709, out->xy);
   for (size_t i = 0; i < out->width * out->height; i++) {
     double direction[3], rgb[3];
@@ -103,8 +102,8 @@ static abbe_result make_image(const abbe_environment *e, abbe_image *out, abbe_e
     abbe_environment_radiance(e, direction, rgb);
     for (size_t k = 0; k < 3; k++) out->data[3 * i + k] = (float)rgb[k];
   }
-  result = abbe_image_set_attribute(out, "abbe:space", abbe_rgb_space_name(ABBE_RGB_SPACE_REC709),
-                                    error);
+  abbe_result result = abbe_image_set_attribute(out, "abbe:space",
+                                                abbe_rgb_space_name(ABBE_RGB_SPACE_REC709), error);
   if (result == ABBE_OK)
     result = abbe_image_set_attribute(out, "abbe:illuminant", abbe_illuminant_name(&e->illuminant),
                                       error);

@@ -96,8 +96,7 @@ static void find_scales(abbe_gamut_map *map) {
 abbe_result abbe_gamut_map_make(abbe_gamut_map_kind kind, const double xy[8], abbe_gamut_map *out,
                                 abbe_error *error) {
   *out = (abbe_gamut_map){.kind = kind, .limit = {1 + 1e-6, 1 + 1e-6, 1 + 1e-6}};
-  abbe_result result = abbe_rgb_space_chromaticities_to_xyz(xy, out->to_xyz, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_rgb_space_chromaticities_to_xyz(xy, out->to_xyz, error));
   abbe_matrix3_invert(out->to_xyz, out->from_xyz);
   find_limits(out);
   find_scales(out);

@@ -126,10 +126,9 @@ static abbe_result load(const char *path, abbe_illuminant *out, abbe_error *erro
 
 static abbe_result take(const double *lambda_nm, const double *power, size_t count,
                         abbe_interpolation interpolation, abbe_illuminant *out, abbe_error *error) {
-  const abbe_result result =
-      abbe_spectrum_make(lambda_nm, power, count, interpolation, &out->spectrum, error);
-  if (result == ABBE_OK) out->kind = ABBE_ILLUMINANT_TABULATED;
-  return result;
+  ABBE_TRY(abbe_spectrum_make(lambda_nm, power, count, interpolation, &out->spectrum, error));
+  out->kind = ABBE_ILLUMINANT_TABULATED;
+  return ABBE_OK;
 }
 
 static abbe_result make_published(const abbe_illuminant_table *t, abbe_illuminant *out,

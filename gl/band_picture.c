@@ -81,8 +81,7 @@ static abbe_result dim(abbe_light *light, const double range_nm[2], const double
   light->power *= density(&whole, range_nm, band_nm);
   const bool dark = !(brightness(&whole, band_nm) > 0);
   if (dark) light->power = 0;
-  const abbe_result result = flatten(dark ? &even : &whole, band_nm, &light->illuminant, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(flatten(dark ? &even : &whole, band_nm, &light->illuminant, error));
   const double own = brightness(&light->illuminant, band_nm);
   if (own > 0) light->power *= first / own;
   return ABBE_OK;
@@ -232,12 +231,9 @@ static abbe_result make_image(const work *w, abbe_image *out, abbe_error *error)
     abbe_image_band_name(0.5 * (band[0] + band[1]), name[i], sizeof name[i]);
     names[i] = name[i];
   }
-  abbe_result result = abbe_image_make(w->desc.width, w->desc.height, w->bands, names, out, error);
-  if (result == ABBE_OK)
-    result = abbe_image_set_attribute(out, "spectralLayoutVersion", "1.0", error);
-  if (result == ABBE_OK)
-    result = abbe_image_set_attribute(out, "emissiveUnits", "W.m^-2.sr^-1.nm^-1", error);
-  return result;
+  ABBE_TRY(abbe_image_make(w->desc.width, w->desc.height, w->bands, names, out, error));
+  ABBE_TRY(abbe_image_set_attribute(out, "spectralLayoutVersion", "1.0", error));
+  return abbe_image_set_attribute(out, "emissiveUnits", "W.m^-2.sr^-1.nm^-1", error);
 }
 
 /* The renderer shows the band afterwards, and the scene that it had before is freed. */
@@ -245,10 +241,10 @@ static abbe_result change(work *w, const abbe_render_desc *desc, const double ba
                           abbe_error *error) {
   const double range[2] = {w->desc.min_nm, w->desc.max_nm};
   abbe_scene next;
-  abbe_result result = band_scene_make(w->scene, range, band, &next, unit, error);
-  if (result != ABBE_OK) return result;
-  result = w->renderer == NULL ? abbe_renderer_make(w->context, &next, desc, &w->renderer, error)
-                               : abbe_renderer_change(w->renderer, &next, desc, error);
+  ABBE_TRY(band_scene_make(w->scene, range, band, &next, unit, error));
+  abbe_result result = w->renderer == NULL
+                           ? abbe_renderer_make(w->context, &next, desc, &w->renderer, error)
+                           : abbe_renderer_change(w->renderer, &next, desc, error);
   band_scene_free(&w->shown);
   w->shown = next;
   return result;

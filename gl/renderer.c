@@ -9,11 +9,11 @@
 #include <string.h>
 
 static abbe_result make_views(abbe_renderer *r, abbe_error *error) {
-  const abbe_result result = abbe_photon_lights_make(&r->scene, &r->views, error);
+  ABBE_TRY(abbe_photon_lights_make(&r->scene, &r->views, error));
   r->variant.wide = r->views.wide;
   r->atlas.views = &r->views;
   r->map.history = &r->history;
-  return result;
+  return ABBE_OK;
 }
 
 /* The map alone where no photons are followed: shaders read it. */
@@ -40,8 +40,8 @@ static abbe_result draw_shafts(abbe_renderer *r, abbe_error *error) {
   abbe_beam_use draws;
   if (r->plan.shaft_count == 0) return ABBE_OK;
   const bool shown = !r->seen && r->haze.caustics != NULL;
-  abbe_result result = shown ? abbe_haze_pass_begin(&r->haze, &draws, error) : ABBE_OK;
-  return result == ABBE_OK ? abbe_shaft_grid_run(&r->shafts, shown ? &draws : NULL, error) : result;
+  ABBE_TRY(shown ? abbe_haze_pass_begin(&r->haze, &draws, error) : ABBE_OK);
+  return abbe_shaft_grid_run(&r->shafts, shown ? &draws : NULL, error);
 }
 
 #define FREED(name, type) (abbe_##type##_free(&r->name), (void)memset(&r->name, 0, sizeof r->name))
@@ -204,9 +204,9 @@ abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress,
                                 abbe_statistics *statistics, abbe_error *error) {
   abbe_error lost = {0};
   abbe_renderer_watched w = {r->context, progress, user, ABBE_OK, &lost, NULL};
-  abbe_result result = abbe_renderer_enter(r->context, error);
-  if (result != ABBE_OK) return result;
-  result = draw(r, progress != NULL ? abbe_renderer_watch : NULL, &w, statistics, error);
+  ABBE_TRY(abbe_renderer_enter(r->context, error));
+  abbe_result result =
+      draw(r, progress != NULL ? abbe_renderer_watch : NULL, &w, statistics, error);
   if (w.result != ABBE_OK) return abbe_error_set(error, w.result, "%s", lost.text);
   return abbe_renderer_leave(r->context, result);
 }

@@ -23,13 +23,12 @@ static abbe_result make_local_scene(abbe_renderer *r, const abbe_scene *scene, a
   const size_t own = scene->light_count;
   size_t of[ABBE_SCENE_MAX_LIGHTS] = {0};
   abbe_local_scene_free(&r->local);
-  abbe_result result = abbe_local_scene_make(scene, &r->local, error);
-  if (result == ABBE_OK && !abbe_renderer_has_method(r))
-    result = abbe_local_scene_scale_light(&r->local, error);
+  ABBE_TRY(abbe_local_scene_make(scene, &r->local, error));
+  if (!abbe_renderer_has_method(r)) ABBE_TRY(abbe_local_scene_scale_light(&r->local, error));
   for (size_t i = own; i < r->plan.light_view_count; i++) of[i - own] = r->plan.light_view[i].light;
-  if (result == ABBE_OK && r->plan.cubes)
-    result = abbe_local_scene_repeat_lights(&r->local, of, r->plan.light_view_count - own, error);
-  return result;
+  if (r->plan.cubes)
+    ABBE_TRY(abbe_local_scene_repeat_lights(&r->local, of, r->plan.light_view_count - own, error));
+  return ABBE_OK;
 }
 
 static void take_plan(abbe_renderer *r, const abbe_plan *plan) {
@@ -98,13 +97,12 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
 
 static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, unsigned parts,
                               abbe_error *error) {
-  abbe_result result = make_local_scene(r, scene, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(make_local_scene(r, scene, error));
   const size_t frames = r->plan.caustics && !abbe_renderer_has_method(r) ? r->plan.desc.history : 0;
   if ((parts & LIGHT) != 0) abbe_map_history_change(&r->history, frames, r->local.origin);
   abbe_gpu_scene_begin(&r->gpu, r->local.scene, r->local.unit, &r->plan, local_layout(r),
                        &r->scene);
-  result = abbe_gpu_scene_make(&r->scene, scene_parts(parts), error);
+  abbe_result result = abbe_gpu_scene_make(&r->scene, scene_parts(parts), error);
   if (result == ABBE_OK && (parts & LIGHT) != 0) result = make_light(r, error);
   if (result == ABBE_OK && abbe_renderer_has_method(r) && (parts & (LIGHT | EYE)) == EYE)
     abbe_method_look(r->method);
@@ -139,8 +137,7 @@ static abbe_result change(abbe_renderer *r, const abbe_scene *scene, const abbe_
   abbe_renderer_inputs inputs;
   abbe_plan plan;
   abbe_scene surrounded;
-  abbe_result result = plan_scene(r, scene, desc, &surrounded, &plan, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(plan_scene(r, scene, desc, &surrounded, &plan, error));
   abbe_environment_lights_drop(&r->surrounded);
   r->surrounded = surrounded;
   if (r->surrounded.light != NULL) scene = &r->surrounded;
@@ -164,7 +161,7 @@ static abbe_result change(abbe_renderer *r, const abbe_scene *scene, const abbe_
   if (parts != 0) r->seen = false; /* all parts show, those of which nothing is made too */
   abbe_gpu_watch(&r->gpu, plan.desc.progress, plan.desc.progress_user);
   r->gpu.compiling = plan.desc.compiling;
-  result = abbe_renderer_end_watch(r, make_parts(r, scene, parts, error), error);
+  abbe_result result = abbe_renderer_end_watch(r, make_parts(r, scene, parts, error), error);
   r->lacking = result == ABBE_OK ? 0 : parts; /* the others are as they were */
   if (r->lacking == 0) abbe_method_follow(r->method, &frames);
   abbe_gpu_drop_textures(&r->gpu, ABBE_METHOD_KEPT, frames.sums);
@@ -227,15 +224,13 @@ abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
                                const abbe_render_desc *desc, abbe_renderer **out,
                                abbe_error *error) {
   *out = NULL;
-  const abbe_result result = abbe_renderer_enter(context, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_renderer_enter(context, error));
   return abbe_renderer_leave(context, make_renderer(context, scene, desc, out, error));
 }
 
 abbe_result abbe_renderer_change(abbe_renderer *r, const abbe_scene *scene,
                                  const abbe_render_desc *desc, abbe_error *error) {
-  const abbe_result result = abbe_renderer_enter(r->context, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_renderer_enter(r->context, error));
   return abbe_renderer_leave(r->context, change_watched(r, scene, desc, error));
 }
 

@@ -24,14 +24,13 @@ static abbe_result set_observer(const abbe_renderer *r, abbe_image *out, abbe_er
 }
 
 static abbe_result read_picture(abbe_renderer *r, bool aovs, abbe_image *out, abbe_error *error) {
-  abbe_result result = check_drawn(r, error);
-  if (result != ABBE_OK) return result;
-  result = r->method != NULL ? abbe_method_read(r->method, out, error)
-                             : abbe_picture_read(&r->picture, aovs, r->local.unit, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_drawn(r, error));
+  ABBE_TRY(r->method != NULL ? abbe_method_read(r->method, out, error)
+                             : abbe_picture_read(&r->picture, aovs, r->local.unit, out, error));
   const abbe_rgb_space space = space_of(r);
   abbe_rgb_space_chromaticities(space, out->xy);
-  result = abbe_image_set_attribute(out, "abbe:space", abbe_rgb_space_name(space), error);
+  abbe_result result =
+      abbe_image_set_attribute(out, "abbe:space", abbe_rgb_space_name(space), error);
   if (result == ABBE_OK) result = set_observer(r, out, error);
   if (result == ABBE_OK) result = abbe_scene_mark_exposure(r->scene.local, out, error);
   if (result == ABBE_OK) result = abbe_gl_check(r->gpu.gl, "the reading of the picture", error);
@@ -47,8 +46,7 @@ static abbe_result check_map(const abbe_renderer *r, size_t light, abbe_error *e
   if (r->plan.volume)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "caustics are looked up in a volume, so there is no spectral map");
-  abbe_result result = check_drawn(r, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_drawn(r, error));
   if (r->method != NULL && r->plan.desc.faces > 1)
     return abbe_error_set(
         error, ABBE_UNSUPPORTED,
@@ -78,12 +76,10 @@ static abbe_result describe_map(const abbe_renderer *r, size_t light, abbe_resul
 
 static abbe_result read_map(abbe_renderer *r, size_t light, bool filled, abbe_image *out,
                             abbe_error *error) {
-  abbe_result result = check_map(r, light, error);
-  if (result != ABBE_OK) return result;
-  result = r->method != NULL ? abbe_method_read_map(r->method, filled, out, error)
-                             : abbe_spectral_map_read(&r->map, light, r->local.unit, out, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_gl_check(r->gpu.gl, "the reading of the map", error);
+  ABBE_TRY(check_map(r, light, error));
+  ABBE_TRY(r->method != NULL ? abbe_method_read_map(r->method, filled, out, error)
+                             : abbe_spectral_map_read(&r->map, light, r->local.unit, out, error));
+  abbe_result result = abbe_gl_check(r->gpu.gl, "the reading of the map", error);
   return describe_map(r, light, result, out, error);
 }
 
@@ -99,9 +95,8 @@ static abbe_result read_map_bands(abbe_renderer *r, size_t light, size_t bands, 
   if (r->plan.desc.history > 1)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "bands are of one frame, not of a history of %zu", r->plan.desc.history);
-  abbe_result result = check_map(r, light, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_map_bands_read(&r->caustics, light, bands, r->local.unit, out, error);
+  ABBE_TRY(check_map(r, light, error));
+  abbe_result result = abbe_map_bands_read(&r->caustics, light, bands, r->local.unit, out, error);
   if (result != ABBE_OK) r->lit = r->seen = false; /* the map may hold bands */
   return describe_map(r, light, result, out, error);
 }
@@ -147,9 +142,8 @@ static abbe_result draw_baseline(abbe_renderer *r, double *ms, abbe_error *error
   gl->Finish();
   const double start_ms = 1e3 * abbe_clock_seconds();
   abbe_refractor_faces_use(&r->faces, &r->camera.view);
-  result = abbe_gpu_set_target(&r->gpu, &r->baseline, &first, 1, r->receivers.depth, samples[0],
-                               samples[1], error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_set_target(&r->gpu, &r->baseline, &first, 1, r->receivers.depth, samples[0],
+                               samples[1], error));
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   abbe_gpu_begin_depths(&r->gpu, true);
   for (size_t i = 0; i < r->scene.local->object_count; i++) abbe_seen_meshes_draw(&r->meshes, i);
@@ -166,24 +160,21 @@ abbe_result abbe_renderer_baseline(abbe_renderer *r, double *ms, abbe_error *err
 
 abbe_result abbe_renderer_read(abbe_renderer *r, bool aovs, abbe_image *out, abbe_error *error) {
   *out = (abbe_image){0};
-  const abbe_result result = abbe_renderer_enter(r->context, error);
-  return result == ABBE_OK ? abbe_renderer_leave(r->context, read_picture(r, aovs, out, error))
-                           : result;
+  ABBE_TRY(abbe_renderer_enter(r->context, error));
+  return abbe_renderer_leave(r->context, read_picture(r, aovs, out, error));
 }
 
 abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, abbe_image *out,
                                    abbe_error *error) {
   *out = (abbe_image){0};
-  const abbe_result result = abbe_renderer_enter(r->context, error);
-  return result == ABBE_OK ? abbe_renderer_leave(r->context, read_map(r, light, filled, out, error))
-                           : result;
+  ABBE_TRY(abbe_renderer_enter(r->context, error));
+  return abbe_renderer_leave(r->context, read_map(r, light, filled, out, error));
 }
 
 abbe_result abbe_renderer_read_map_bands(abbe_renderer *r, size_t light, size_t bands,
                                          abbe_image *out, abbe_error *error) {
   *out = (abbe_image){0};
-  const abbe_result result = abbe_renderer_enter(r->context, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_renderer_enter(r->context, error));
   return abbe_renderer_leave(r->context, read_map_bands(r, light, bands, out, error));
 }
 
@@ -193,10 +184,9 @@ abbe_result abbe_renderer_read_hits(abbe_renderer *r, size_t light, size_t first
   *out = (abbe_renderer_hits){0};
   abbe_error lost = {0};
   abbe_renderer_watched w = {r->context, progress, user, ABBE_OK, &lost, NULL};
-  abbe_result result = abbe_renderer_enter(r->context, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_renderer_enter(r->context, error));
   abbe_gpu_watch(&r->gpu, progress != NULL ? abbe_renderer_watch : NULL, &w);
-  result = read_hits(r, light, first, out, error);
+  abbe_result result = read_hits(r, light, first, out, error);
   if (result == ABBE_OK) result = abbe_gpu_tell(&r->gpu, 1, error);
   abbe_gpu_watch(&r->gpu, NULL, NULL);
   if (w.result != ABBE_OK) result = abbe_error_set(error, w.result, "%s", lost.text);

@@ -3,9 +3,9 @@
 #include "gl/device/state.h"
 
 abbe_result abbe_renderer_enter(abbe_context *context, abbe_error *error) {
-  const abbe_result result = abbe_context_make_current(context, error);
-  if (result == ABBE_OK) abbe_gl_state_begin(abbe_context_gl(context));
-  return result;
+  ABBE_TRY(abbe_context_make_current(context, error));
+  abbe_gl_state_begin(abbe_context_gl(context));
+  return ABBE_OK;
 }
 
 abbe_result abbe_renderer_leave(abbe_context *context, abbe_result result) {

@@ -75,11 +75,11 @@ abbe_result abbe_lib_comparison_make(const abbe_lib_picture *reference,
   ABBE_REQUIRE(reference && test && (settings || count == 0) && out, error);
   request q = {.mask_share = ABBE_MASK_CAUSTIC_SHARE};
   *out = NULL;
-  abbe_result result = read_request(settings, count, mask != NULL, &q, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_request(settings, count, mask != NULL, &q, error));
   abbe_lib_comparison *c = calloc(1, sizeof *c);
   if (c == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory to compare");
-  result = compare(&q, (const abbe_lib_picture *const[]){reference, test}, mask, c, error);
+  abbe_result result =
+      compare(&q, (const abbe_lib_picture *const[]){reference, test}, mask, c, error);
   if (result == ABBE_OK)
     *out = c;
   else

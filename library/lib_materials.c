@@ -43,9 +43,9 @@ abbe_result abbe_lib_materials_find(const abbe_lib_materials *m, const char *nam
                                     abbe_error *error) {
   ABBE_REQUIRE(m && name && index, error);
   const abbe_material *found = NULL;
-  abbe_result result = abbe_material_table_find(&m->table, name, &found, error);
-  if (result == ABBE_OK) *index = (size_t)(found - m->table.material);
-  return result;
+  ABBE_TRY(abbe_material_table_find(&m->table, name, &found, error));
+  *index = (size_t)(found - m->table.material);
+  return ABBE_OK;
 }
 
 const char *abbe_lib_materials_text(const abbe_lib_materials *m, size_t index, const char *what) {
@@ -68,8 +68,7 @@ static abbe_result check_place(const abbe_lib_materials *m, size_t index, abbe_e
 abbe_result abbe_lib_materials_range(const abbe_lib_materials *m, size_t index, double *min_nm,
                                      double *max_nm, abbe_error *error) {
   ABBE_REQUIRE(m && min_nm && max_nm, error);
-  abbe_result result = check_place(m, index, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_place(m, index, error));
   *min_nm = m->table.material[index].min_nm;
   *max_nm = m->table.material[index].max_nm;
   return ABBE_OK;

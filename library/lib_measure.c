@@ -130,15 +130,14 @@ abbe_result abbe_lib_scene_lay_map(abbe_lib_scene *s, const abbe_lib_picture *li
 
 static abbe_result take_picture(abbe_lib_scene *s, abbe_lib_picture **picture, abbe_error *error) {
   abbe_image image = {0};
-  abbe_result result = abbe_renderer_read(s->renderer, false, &image, error);
-  return result == ABBE_OK ? abbe_library_picture_adopt(&image, picture, error) : result;
+  ABBE_TRY(abbe_renderer_read(s->renderer, false, &image, error));
+  return abbe_library_picture_adopt(&image, picture, error);
 }
 
 static abbe_result time_frames(abbe_lib_scene *s, const abbe_frame_times_desc *desc, FILE *to,
                                abbe_error *error) {
   abbe_frame_times times;
-  abbe_result result = abbe_frame_times_measure(s->renderer, desc, &times, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_frame_times_measure(s->renderer, desc, &times, error));
   const abbe_statistics *m = &times.median;
   const abbe_ledger *e = &m->energy;
   put(to, "frame_ms", m->frame_ms);
@@ -173,10 +172,9 @@ abbe_result abbe_lib_scene_times(abbe_lib_scene *s, const char *const *settings,
   if (s->renderer == NULL || s->held != s->now)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "no picture of the scene as it is has been rendered; times are of one");
-  abbe_result result = abbe_library_settings_read("times", known, sizeof known / sizeof *known,
-                                                  settings, count, error);
-  if (result != ABBE_OK) return result;
-  result = begin(&a, error);
+  ABBE_TRY(abbe_library_settings_read("times", known, sizeof known / sizeof *known, settings, count,
+                                      error));
+  abbe_result result = begin(&a, error);
   if (result == ABBE_OK && desc.frames > 0) result = time_frames(s, &desc, a.to, error);
   if (result == ABBE_OK && picture != NULL) result = take_picture(s, picture, error);
   if (result == ABBE_OK && baseline > 0) {
@@ -251,11 +249,10 @@ abbe_result abbe_lib_picture_resample(const abbe_lib_picture *map, const abbe_li
   size_t parts =
       map->image.width > 0 ? PARTS * (1 + (like->image.width - 1) / map->image.width) : 1;
   if (parts > ABBE_MAP_RESAMPLE_MAX_PARTS) parts = ABBE_MAP_RESAMPLE_MAX_PARTS;
-  abbe_result result = abbe_map_layout_read(&like->image, "the other map", &layout, error);
-  if (result == ABBE_OK)
-    result = abbe_map_resample(&map->image, "the map", &layout, like->image.width,
-                               like->image.height, parts, &moved, error);
-  return result == ABBE_OK ? abbe_library_picture_adopt(&moved, out, error) : result;
+  ABBE_TRY(abbe_map_layout_read(&like->image, "the other map", &layout, error));
+  ABBE_TRY(abbe_map_resample(&map->image, "the map", &layout, like->image.width, like->image.height,
+                             parts, &moved, error));
+  return abbe_library_picture_adopt(&moved, out, error);
 }
 
 /* ---- presets ---- */
@@ -286,9 +283,8 @@ abbe_result abbe_lib_presets_read(const char *path, const char *of, char **out, 
   abbe_presets presets = {0};
   answer a;
   *out = NULL;
-  abbe_result result = abbe_presets_load(path, &presets, error);
-  if (result != ABBE_OK) return result;
-  result = begin(&a, error);
+  ABBE_TRY(abbe_presets_load(path, &presets, error));
+  abbe_result result = begin(&a, error);
   for (size_t i = 0; result == ABBE_OK && i < presets.count; i++)
     if (strcmp(abbe_preset_class_name(presets.front[i].of), of) == 0)
       put_front(a.to, &presets, &presets.front[i]);

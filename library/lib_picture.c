@@ -34,8 +34,7 @@ abbe_result abbe_lib_picture_make(size_t width, size_t height, size_t channels,
   *out = NULL;
   for (size_t i = 0; i < channels && i < ABBE_IMAGE_MAX_CHANNELS; i++)
     ABBE_REQUIRE(names[i], error);
-  abbe_result result = abbe_image_make(width, height, channels, names, &image, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_image_make(width, height, channels, names, &image, error));
   if (pixels != NULL) memcpy(image.data, pixels, width * height * channels * sizeof *pixels);
   return abbe_library_picture_adopt(&image, out, error);
 }
@@ -49,9 +48,8 @@ abbe_result abbe_lib_picture_load(const char *path, abbe_lib_picture **out, abbe
   ABBE_REQUIRE(path && out, error);
   abbe_image image = {0};
   *out = NULL;
-  abbe_result result =
-      is_png(path) ? abbe_png_read(path, &image, error) : abbe_exr_read(path, &image, error);
-  return result == ABBE_OK ? abbe_library_picture_adopt(&image, out, error) : result;
+  ABBE_TRY(is_png(path) ? abbe_png_read(path, &image, error) : abbe_exr_read(path, &image, error));
+  return abbe_library_picture_adopt(&image, out, error);
 }
 
 void abbe_lib_picture_free(abbe_lib_picture *picture) {
@@ -106,8 +104,7 @@ abbe_result abbe_lib_picture_set_attribute(abbe_lib_picture *picture, const char
                                            const char *text, abbe_error *error) {
   ABBE_REQUIRE(picture && name && text, error);
   if (strcmp(name, "abbe:space") == 0) {
-    abbe_result result = take_space(&picture->image, text, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(take_space(&picture->image, text, error));
   }
   return abbe_image_set_attribute(&picture->image, name, text, error);
 }
@@ -135,9 +132,8 @@ abbe_result abbe_lib_picture_save_png(const abbe_lib_picture *picture, const cha
                                                     ABBE_DISPLAY_MAX_EXPOSURE),
                                     ABBE_LIB_CHOICE("bits", &depth, depths)};
   desc.display.exposure = NAN;
-  abbe_result result = abbe_library_settings_read("save_png", known, sizeof known / sizeof *known,
-                                                  settings, count, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_library_settings_read("save_png", known, sizeof known / sizeof *known, settings,
+                                      count, error));
   desc.stated = !isnan(desc.display.exposure);
   if (!desc.stated) desc.display.exposure = 0;
   desc.bits = depth < 0 ? 0 : bits[depth];

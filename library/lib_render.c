@@ -66,15 +66,14 @@ abbe_result abbe_lib_scene_render(abbe_lib_scene *s, const char *const *settings
   request q = {0};
   abbe_image image = {0};
   *out = NULL;
-  abbe_result result = abbe_library_render_request_read(settings, count, &q, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_library_render_request_read(settings, count, &q, error));
   if (s->laid && !abbe_method_of(q.desc.profile)->own_passes) {
     q.desc.map_layout = &s->layout;
     q.desc.map_layout_light = s->laid_light;
   }
   q.desc.progress = s->progress;
   q.desc.progress_user = s->user;
-  result = prepare(s, &q, error);
+  abbe_result result = prepare(s, &q, error);
   if (result == ABBE_OK)
     result = abbe_renderer_frame(s->renderer, s->progress, s->user, NULL, error);
   if (result == ABBE_OK) result = abbe_renderer_read(s->renderer, q.desc.aovs, &image, error);

@@ -89,8 +89,7 @@ abbe_result abbe_library_settings_read(const char *what, const abbe_lib_setting 
     size_t row = 0;
     while (row < known_count && strcmp(known[row].key, key) != 0) row++;
     if (row == known_count) return refuse_key(what, known, known_count, key, error);
-    abbe_result result = take(what, &known[row], text[i] + length + 1, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(take(what, &known[row], text[i] + length + 1, error));
   }
   return ABBE_OK;
 }

@@ -103,8 +103,8 @@ static abbe_result take_picture(const request *q, const abbe_tracer *tracer, abb
 
 static abbe_result take_map(const abbe_tracer *tracer, abbe_lib_picture **out, abbe_error *error) {
   abbe_image image = {0};
-  abbe_result result = abbe_tracer_map(tracer, &image, error);
-  return result == ABBE_OK ? abbe_library_picture_adopt(&image, out, error) : result;
+  ABBE_TRY(abbe_tracer_map(tracer, &image, error));
+  return abbe_library_picture_adopt(&image, out, error);
 }
 
 /* From the checkpoint on, where there is one; what is stopped is kept in it. */

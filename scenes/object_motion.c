@@ -140,8 +140,7 @@ abbe_result abbe_object_move(abbe_object *object, const double matrix[16], abbe_
     if (!abbe_vector_finite(corner))
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the object would have no finite place");
   }
-  abbe_result result = abbe_mesh_transform(&object->mesh, matrix, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_mesh_transform(&object->mesh, matrix, error));
   move_exact(&object->exact, matrix, scale);
   abbe_object_turn_axes(object, matrix);
   abbe_brushing_move(&object->brushing, matrix);

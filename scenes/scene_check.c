@@ -286,8 +286,7 @@ abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error) {
                           "least one object a 'reflectance' in place of a 'material', or the scene "
                           "surroundings under 'environment', which are seen themselves",
                           path_of(scene));
-  const abbe_result result = check_places(scene, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_places(scene, error));
   if (!seen && scene->environment == NULL)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%s: no receiver is in the camera's view, so no caustic could be seen; "

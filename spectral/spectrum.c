@@ -132,8 +132,7 @@ abbe_result abbe_spectrum_make(const double *lambda_nm, const double *value, siz
                                abbe_interpolation interpolation, abbe_spectrum **out,
                                abbe_error *error) {
   *out = NULL;
-  abbe_result result = check(lambda_nm, value, count, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check(lambda_nm, value, count, error));
   abbe_spectrum *made = calloc(1, sizeof *made);
   if (made != NULL) *made = (struct abbe_spectrum){.count = count, .interpolation = interpolation};
   if (made == NULL || !allocate(made, interpolation)) {

@@ -26,8 +26,7 @@ static double node(size_t i, size_t count, double min_nm, double max_nm) {
 static abbe_result make(size_t count, const double *lambda_nm, double min_nm, double max_nm,
                         abbe_wavelengths *out, abbe_error *error) {
   *out = (abbe_wavelengths){0};
-  abbe_result result = check(count, min_nm, max_nm, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check(count, min_nm, max_nm, error));
   abbe_wavelengths made = {.count = count,
                            .lambda_nm = malloc(count * sizeof(double)),
                            .edge_nm = malloc((count + 1) * sizeof(double))};

@@ -183,8 +183,7 @@ static abbe_result read_numbers(abbe_yaml *yaml, abbe_yaml_node mapping, const c
   double value = 0;
   for (size_t i = 0; i < count; i++) {
     abbe_yaml_node item = abbe_yaml_item(yaml, list, i);
-    abbe_result result = read_number(yaml, item, key, length, min, max, &value, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(read_number(yaml, item, key, length, min, max, &value, error));
   }
   for (size_t i = 0; i < count; i++)
     read_number(yaml, abbe_yaml_item(yaml, list, i), key, length, min, max, &out[i], error);
@@ -397,10 +396,8 @@ abbe_result abbe_yaml_require(abbe_yaml *yaml, abbe_yaml_node mapping, const cha
     return abbe_yaml_fail(yaml, mapping, error, "a mapping with the key '%s' is wanted here", key);
   *out = abbe_yaml_get(yaml, mapping, key);
   if (out->id != 0) return ABBE_OK;
-  const abbe_result result = abbe_yaml_refuse_near(yaml, mapping, key, error);
-  return result != ABBE_OK
-             ? result
-             : abbe_yaml_fail(yaml, mapping, error, "the key '%s' is missing here", key);
+  ABBE_TRY(abbe_yaml_refuse_near(yaml, mapping, key, error));
+  return abbe_yaml_fail(yaml, mapping, error, "the key '%s' is missing here", key);
 }
 
 abbe_result abbe_yaml_check_keys(const abbe_yaml *yaml, abbe_yaml_node mapping, const char *what,

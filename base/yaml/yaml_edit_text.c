@@ -124,9 +124,8 @@ abbe_result abbe_yaml_edit_splice_value(abbe_yaml_edit *e, abbe_yaml_bytes where
                                         size_t skip, const char *value, const char *what,
                                         abbe_error *error) {
   abbe_yaml_edit before;
-  abbe_result result = abbe_yaml_edit_make(e->text, e->size, e->name, &before, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_yaml_edit_splice(e, where, with, error);
+  ABBE_TRY(abbe_yaml_edit_make(e->text, e->size, e->name, &before, error));
+  abbe_result result = abbe_yaml_edit_splice(e, where, with, error);
   bool found = false;
   size_t from = where.from + skip, to = from + strlen(value);
   for (int id = 1; result == ABBE_OK && !found; id++) {

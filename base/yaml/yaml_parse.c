@@ -144,8 +144,7 @@ static abbe_result add_scalar(builder *b, const yaml_event_t *event, size_t line
   if (strlen(value) != length)
     return abbe_yaml_fail_at(b->yaml, line, ABBE_SCHEMA, b->error, "a text holds a zero byte");
   int id = 0;
-  abbe_result result = add_node(b, ABBE_YAML_SCALAR, line, &id);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(add_node(b, ABBE_YAML_SCALAR, line, &id));
   abbe_yaml_part *scalar = abbe_yaml_at(b->yaml, (abbe_yaml_node){id});
   scalar->quoted = event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
   scalar->from = abbe_text_cursor_byte(&b->cursor, event->start_mark.index);
@@ -153,7 +152,7 @@ static abbe_result add_scalar(builder *b, const yaml_event_t *event, size_t line
   scalar->text = malloc(length + 1);
   if (scalar->text == NULL) return abbe_yaml_no_memory(b->yaml, b->error);
   memcpy(scalar->text, value, length + 1);
-  result = add_anchor(b, event->data.scalar.anchor, id, line);
+  abbe_result result = add_anchor(b, event->data.scalar.anchor, id, line);
   if (result == ABBE_OK) result = attach(b, id);
   return result != ABBE_OK ? result : close_node(b, id, line);
 }
@@ -169,13 +168,12 @@ static abbe_result open_collection(builder *b, abbe_yaml_kind kind, const yaml_e
     return abbe_yaml_fail_at(b->yaml, line, ABBE_SCHEMA, b->error,
                              "is nested deeper than %d levels", MAX_DEPTH);
   int id = 0;
-  abbe_result result = add_node(b, kind, line, &id);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(add_node(b, kind, line, &id));
   abbe_yaml_part *collection = abbe_yaml_at(b->yaml, (abbe_yaml_node){id});
   collection->from = abbe_text_cursor_byte(&b->cursor, event->start_mark.index);
   collection->flow = list ? event->data.sequence_start.style == YAML_FLOW_SEQUENCE_STYLE
                           : event->data.mapping_start.style == YAML_FLOW_MAPPING_STYLE;
-  result = add_anchor(b, anchor, id, line);
+  abbe_result result = add_anchor(b, anchor, id, line);
   if (result == ABBE_OK) result = attach(b, id);
   if (result == ABBE_OK) b->stack[b->depth++] = id;
   return result;

@@ -135,9 +135,9 @@ void abbe_command_note_part(const char *name, const char *part) {
 }
 
 abbe_result abbe_command_read_picture(const char *path, struct abbe_image *out, abbe_error *error) {
-  const abbe_result result = abbe_exr_read(path, out, error);
-  if (result == ABBE_OK) abbe_command_note_part(path, out->part);
-  return result;
+  ABBE_TRY(abbe_exr_read(path, out, error));
+  abbe_command_note_part(path, out->part);
+  return ABBE_OK;
 }
 
 /* cJSON copies the bytes of strings as they are, but for those below U+0020. */

@@ -61,8 +61,8 @@ static abbe_result turn(abbe_gem_stone_input *q, abbe_error *error) {
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "--axis '%s': %s has one index in all directions; leave the option out",
                           q->axis, q->in.material->name);
-  const abbe_result result = abbe_gem_axes_read(q->axis, &q->axes, error);
-  return result == ABBE_OK ? abbe_gem_stone_turn(&q->stone, &q->axes, error) : result;
+  ABBE_TRY(abbe_gem_axes_read(q->axis, &q->axes, error));
+  return abbe_gem_stone_turn(&q->stone, &q->axes, error);
 }
 
 abbe_result abbe_gem_stone_input_load(abbe_gem_stone_input *q, abbe_error *error) {

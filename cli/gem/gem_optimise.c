@@ -283,10 +283,8 @@ static abbe_result print_json(const request *q, const abbe_gem_stone_input *in,
 /* The cut becomes the best one. */
 static abbe_result write_best(request *q, const abbe_gem_optimum *o, abbe_error *error) {
   abbe_gem_input *in = &q->stone.in;
-  abbe_result result = abbe_gem_optimum_apply(o, &in->cut, &in->stone, o->best, error);
-  if (result == ABBE_OK)
-    result = abbe_gem_output_write(q->out, &in->cut, &in->stone, 1, NULL, &in->report, error);
-  return result;
+  ABBE_TRY(abbe_gem_optimum_apply(o, &in->cut, &in->stone, o->best, error));
+  return abbe_gem_output_write(q->out, &in->cut, &in->stone, 1, NULL, &in->report, error);
 }
 
 /* ---- the search ---- */

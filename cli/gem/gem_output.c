@@ -30,12 +30,12 @@ abbe_result abbe_gem_output_write(const char *path, const abbe_cut *cut,
         "'%s': a design is written as .asc, .gem or .gcs, its solid as .stl, .obj or "
         ".glb",
         path);
-  abbe_result result = abbe_file_writer_open(&writer, path, error);
-  if (result != ABBE_OK) return result;
-  result = asc   ? abbe_cut_asc_write(cut, writer.stream, report, error)
-           : gem ? abbe_cut_gem_write(cut, stone, writer.stream, report, error)
-           : gcs ? abbe_cut_gcs_write(cut, stone, writer.stream, report, error)
-                 : abbe_cut_solid_write(cut, stone, scale, material, solid, writer.stream, error);
+  ABBE_TRY(abbe_file_writer_open(&writer, path, error));
+  abbe_result result =
+      asc   ? abbe_cut_asc_write(cut, writer.stream, report, error)
+      : gem ? abbe_cut_gem_write(cut, stone, writer.stream, report, error)
+      : gcs ? abbe_cut_gcs_write(cut, stone, writer.stream, report, error)
+            : abbe_cut_solid_write(cut, stone, scale, material, solid, writer.stream, error);
   return abbe_file_writer_end(&writer, result, error);
 }
 

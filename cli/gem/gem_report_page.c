@@ -83,11 +83,8 @@ static abbe_result make_light(const abbe_gem_stone_input *in, size_t most, light
                               abbe_error *error) {
   const abbe_illuminant d65 = {0};
   const size_t count = in->count < most ? in->count : most;
-  abbe_result result =
-      abbe_wavelengths_make(count, in->from_nm, in->to_nm, &out->wavelengths, error);
-  if (result == ABBE_OK)
-    result = abbe_weights_make(&out->wavelengths, &d65, ABBE_RGB_SPACE_XYZ, &out->weights, error);
-  return result;
+  ABBE_TRY(abbe_wavelengths_make(count, in->from_nm, in->to_nm, &out->wavelengths, error));
+  return abbe_weights_make(&out->wavelengths, &d65, ABBE_RGB_SPACE_XYZ, &out->weights, error);
 }
 
 static void free_light(light *l) {

@@ -108,10 +108,9 @@ static abbe_result put_tilt_page(abbe_sheet *s, const abbe_gem_tilts *t, abbe_er
 abbe_result abbe_gem_report_sheet(const char *path, const abbe_gem_report_facts *f,
                                   abbe_error *error) {
   abbe_sheet *s;
-  abbe_result result = abbe_sheet_make(path, &s, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_sheet_make(path, &s, error));
   char text[400];
-  result = abbe_gem_report_page_put(s, f, error);
+  abbe_result result = abbe_gem_report_page_put(s, f, error);
   abbe_sheet_turn(s);
   snprintf(text, sizeof text, "%s in %s", abbe_gem_input_title(&f->input->in),
            f->input->in.material->name);
@@ -155,8 +154,6 @@ static abbe_result write_map(const char *folder, const abbe_gem_judgement *j, in
 
 abbe_result abbe_gem_report_maps(const char *folder, const abbe_gem_judgement *j,
                                  abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i <= ABBE_GEM_MAP_COUNT && result == ABBE_OK; i++)
-    result = write_map(folder, j, i, error);
-  return result;
+  for (int i = 0; i <= ABBE_GEM_MAP_COUNT; i++) ABBE_TRY(write_map(folder, j, i, error));
+  return ABBE_OK;
 }

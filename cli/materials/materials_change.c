@@ -34,8 +34,7 @@ abbe_result abbe_change_check_table(const char *table, abbe_error *error) {
 abbe_result abbe_change_open(abbe_change *change, abbe_error *error) {
   if (change->table == NULL)
     abbe_materials_wrong_use(change->program, "which table? Name its file with --table FILE");
-  abbe_result result = abbe_change_check_table(change->table, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_change_check_table(change->table, error));
   return abbe_table_edit_open(change->table, &change->edit, error);
 }
 
@@ -274,8 +273,7 @@ static abbe_result read_record(const char *path, char **out, abbe_error *error) 
 
 static abbe_result bare_record(const char *name, char **out, abbe_error *error) {
   char *quoted = NULL;
-  abbe_result result = abbe_yaml_quote_make(name, &quoted, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_yaml_quote_make(name, &quoted, error));
   size_t size = strlen(quoted) + 8;
   *out = malloc(size);
   if (*out != NULL) snprintf(*out, size, "name: %s", quoted);
@@ -296,11 +294,10 @@ static abbe_result check_free(const request *r, const char *name, abbe_error *er
 static abbe_result add(const request *r, abbe_error *error) {
   char *record = NULL;
   const char *name = r->as != NULL ? r->as : r->name;
-  abbe_result result = name != NULL ? check_free(r, name, error) : ABBE_OK;
-  if (result != ABBE_OK) return result;
-  result = r->record != NULL ? read_record(r->record, &record, error)
-           : r->from != NULL ? copy_record(r, &record, error)
-                             : bare_record(r->name, &record, error);
+  ABBE_TRY(name != NULL ? check_free(r, name, error) : ABBE_OK);
+  abbe_result result = r->record != NULL ? read_record(r->record, &record, error)
+                       : r->from != NULL ? copy_record(r, &record, error)
+                                         : bare_record(r->name, &record, error);
   if (result == ABBE_OK) result = abbe_table_edit_add(r->change.edit, record, error);
   free(record);
   for (size_t i = 0; i < r->assign_count && result == ABBE_OK; i++)
@@ -437,14 +434,13 @@ static const struct argp materials_set_parser = {
 };
 
 static abbe_result change_all(const materials_set_request *r, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < r->unset_count && result == ABBE_OK; i++)
-    result = abbe_table_edit_unset(r->change.edit, r->name, r->unset[i], error);
-  for (size_t i = 0; i < r->assign_count && result == ABBE_OK; i++)
-    result = abbe_change_assign(r->change.edit, r->name, r->assign[i], error);
-  if (result == ABBE_OK && r->new_name != NULL)
-    result = abbe_table_edit_rename(r->change.edit, r->name, r->new_name, error);
-  return result;
+  for (size_t i = 0; i < r->unset_count; i++)
+    ABBE_TRY(abbe_table_edit_unset(r->change.edit, r->name, r->unset[i], error));
+  for (size_t i = 0; i < r->assign_count; i++)
+    ABBE_TRY(abbe_change_assign(r->change.edit, r->name, r->assign[i], error));
+  if (r->new_name != NULL)
+    ABBE_TRY(abbe_table_edit_rename(r->change.edit, r->name, r->new_name, error));
+  return ABBE_OK;
 }
 
 int abbe_materials_set(int argc, char **argv) {

@@ -135,9 +135,7 @@ static abbe_result choose(const request *r, const abbe_material_table *table,
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu materials", count);
   for (size_t i = 0; i < count; i++) {
     const abbe_material *m = &table->material[i];
-    abbe_result result =
-        r->names == 0 ? ABBE_OK : abbe_material_table_find(table, r->name[i], &m, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(r->names == 0 ? ABBE_OK : abbe_material_table_find(table, r->name[i], &m, error));
     for (size_t k = 0; k < i; k++)
       if (r->names > 0 && strcasecmp(chosen->material[k].name, m->name) == 0)
         return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "'%s' is named twice", m->name);

@@ -95,8 +95,7 @@ static abbe_result take(request *r, const abbe_material_table *table, abbe_dispe
     result = read_formula(r->formula, source, error);
     return result == ABBE_OK ? sample(r, source, s, error) : result;
   }
-  result = abbe_material_table_find(table, r->name, &m, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_material_table_find(table, r->name, &m, error));
   *source = m->dispersion; /* borrowed */
   return take_entry(r, m, s, error);
 }
@@ -187,8 +186,7 @@ static void print_text(const request *r, const subject *s, const abbe_fit *f,
 static abbe_result print_record(const request *r, const subject *s, const abbe_fit *f,
                                 abbe_error *error) {
   char name[ABBE_MATERIAL_MAX_NAME + 1], source[400], warning[420];
-  abbe_result result = abbe_material_check_name(r->record, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_material_check_name(r->record, error));
   snprintf(name, sizeof name, "%s", r->record);
   snprintf(source, sizeof source, "%s form of %zu terms, fitted to %s",
            abbe_fit_form_name(r->fit.form), r->fit.terms, s->text);

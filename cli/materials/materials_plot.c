@@ -55,8 +55,7 @@ abbe_result abbe_materials_fit_plot(const char *path, const char *of,
                                     abbe_error *error) {
   figures f;
   char title[400];
-  abbe_result result = open_figures(points, fit, &f, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(open_figures(points, fit, &f, error));
   abbe_chart_style style = points->exact ? ABBE_CHART_LINE : ABBE_CHART_POINTS;
   bool bars = points->uncertainty != NULL;
   snprintf(title, sizeof title, "%s form of %zu coefficients, fitted to %s: rms %.2g, largest %.2g",
@@ -86,7 +85,7 @@ abbe_result abbe_materials_fit_plot(const char *path, const char *of,
        .y = {.label = "n - fit"},
        .series_count = 2,
        .series = below}};
-  result = abbe_chart_write(path, charts, 2, 0, 0, error);
+  abbe_result result = abbe_chart_write(path, charts, 2, 0, 0, error);
   free(f.memory);
   return result;
 }

@@ -197,8 +197,7 @@ static abbe_result show_text(const request *r, const abbe_material *m, const abb
            abbe_materials_loss_columns(m));
   for (size_t i = 0; i < r->at_count; i++) {
     double n = 0;
-    abbe_result result = abbe_material_n(m, r->at[i], &n, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_material_n(m, r->at[i], &n, error));
     printf("  %10.6g  %12.9f", r->at[i], n);
     if (two) printf("  %12.9f", extraordinary_at(m, r->at[i]));
     abbe_materials_print_losses(m, r->at[i]);

@@ -60,9 +60,8 @@ static abbe_result make_light(const char *name, abbe_illuminant *light,
 }
 
 abbe_result abbe_spectral_options_load(abbe_spectral_options *o, abbe_error *error) {
-  abbe_result result = make_light(o->lit_by, &o->from, &o->view.from, error);
-  if (result == ABBE_OK) result = make_light(o->illuminant, &o->to, &o->view.to, error);
-  return result;
+  ABBE_TRY(make_light(o->lit_by, &o->from, &o->view.from, error));
+  return make_light(o->illuminant, &o->to, &o->view.to, error);
 }
 
 void abbe_spectral_options_free(abbe_spectral_options *o) {

@@ -200,9 +200,9 @@ const struct argp_option *abbe_render_options_aside(void) {
 
 abbe_result abbe_render_options_load_volume(abbe_render_options *request, abbe_error *error) {
   if (request->volume_path == NULL) return ABBE_OK;
-  const abbe_result result = abbe_volume_file_read(request->volume_path, &request->volume, error);
-  if (result == ABBE_OK) request->desc.volume = &request->volume;
-  return result;
+  ABBE_TRY(abbe_volume_file_read(request->volume_path, &request->volume, error));
+  request->desc.volume = &request->volume;
+  return ABBE_OK;
 }
 
 int abbe_render_options_end(const abbe_render_options *request, bool scene_loaded,
@@ -260,9 +260,8 @@ static abbe_result put(const abbe_error_options *o, const abbe_error_bars *bars,
   snprintf(text, sizeof text,
            "of %s, from %zu variants and a coarse picture; what is not modelled is not in them",
            o->mean ? "the mean" : "the picture", bars->variants);
-  abbe_result result = abbe_image_set_attribute(picture, "abbe:stderr", text, error);
-  if (result == ABBE_OK) result = abbe_error_bars_attach(bars, picture, error);
-  return result;
+  ABBE_TRY(abbe_image_set_attribute(picture, "abbe:stderr", text, error));
+  return abbe_error_bars_attach(bars, picture, error);
 }
 
 abbe_result abbe_error_options_work(const abbe_error_options *o, abbe_context *context,

@@ -108,17 +108,13 @@ abbe_result abbe_render_annotate(const request *q, const abbe_renderer *renderer
            abbe_profile_name(d->profile), d->wavelengths, d->min_nm, d->max_nm, d->photons,
            d->map_size, d->supersample, d->upsample, d->adaptive, abbe_fill_name(d->fill),
            d->energy_share, d->exits);
-  abbe_result result = abbe_image_set_attribute(image, "abbe:settings", text, error);
-  if (result == ABBE_OK)
-    result = abbe_image_set_attribute(image, "abbe:scene", q->render.scene, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_image_set_attribute(image, "abbe:device", abbe_context_description(context), error);
-  if (result == ABBE_OK)
-    result = abbe_image_set_attribute(
-        image, "abbe:unit",
-        abbe_method_of(d->profile)->printed ? "display brightness" : "radiance, W/(m2 sr)", error);
-  return result;
+  ABBE_TRY(abbe_image_set_attribute(image, "abbe:settings", text, error));
+  ABBE_TRY(abbe_image_set_attribute(image, "abbe:scene", q->render.scene, error));
+  ABBE_TRY(
+      abbe_image_set_attribute(image, "abbe:device", abbe_context_description(context), error));
+  return abbe_image_set_attribute(
+      image, "abbe:unit",
+      abbe_method_of(d->profile)->printed ? "display brightness" : "radiance, W/(m2 sr)", error);
 }
 
 abbe_result abbe_render_add_bands(const request *q, const abbe_scene *scene, abbe_context *context,
@@ -141,13 +137,12 @@ abbe_result abbe_render_write_png(const request *q, const abbe_image *image, abb
 abbe_result abbe_render_save_map(const request *q, abbe_renderer *renderer, abbe_error *error) {
   abbe_image map = {0};
   bool thesis = abbe_method_of(abbe_renderer_plan(renderer)->desc.profile)->printed;
-  abbe_result result =
+  ABBE_TRY(
       q->bands > 0
           ? abbe_renderer_read_map_bands(renderer, q->map.light_index, q->bands, &map, error)
-          : abbe_renderer_read_map(renderer, q->map.light_index, !q->render.unfilled, &map, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_image_set_attribute(&map, "abbe:unit",
-                                    thesis ? "display brightness" : "flux a texel, W", error);
+          : abbe_renderer_read_map(renderer, q->map.light_index, !q->render.unfilled, &map, error));
+  abbe_result result = abbe_image_set_attribute(
+      &map, "abbe:unit", thesis ? "display brightness" : "flux a texel, W", error);
   if (result == ABBE_OK)
     result = abbe_image_set_attribute(&map, "abbe:scene", q->render.scene, error);
   if (result == ABBE_OK) result = abbe_exr_write(q->map.save, &map, error);

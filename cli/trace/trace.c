@@ -326,8 +326,7 @@ static abbe_result resume(const request *q, abbe_tracer *tracer, abbe_error *err
   const bool part = q->part_end > 0;
   if (!q->work.resume || q->checkpoint_path == NULL || access(q->checkpoint_path, F_OK) != 0)
     return part ? abbe_tracer_begin_at(tracer, q->part_first, 1, error) : ABBE_OK;
-  abbe_result result = abbe_checkpoint_load(tracer, q->checkpoint_path, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_checkpoint_load(tracer, q->checkpoint_path, error));
   const size_t passes = abbe_tracer_passes(tracer), first = abbe_tracer_first_pass(tracer);
   if (first != q->part_first || abbe_tracer_step(tracer) != 1)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

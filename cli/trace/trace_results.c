@@ -260,8 +260,7 @@ static abbe_result resume_rank(const abbe_trace_request *q, abbe_tracer *tracer,
   const abbe_ranks *r = q->ranks;
   if (!q->work.resume || q->checkpoint_path == NULL || access(q->checkpoint_path, F_OK) != 0)
     return abbe_tracer_begin_at(tracer, r->rank, r->count, error);
-  abbe_result result = abbe_checkpoint_load(tracer, q->checkpoint_path, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_checkpoint_load(tracer, q->checkpoint_path, error));
   const size_t first = abbe_tracer_first_pass(tracer), step = abbe_tracer_step(tracer);
   if (first == r->rank && step == r->count) return ABBE_OK;
   return abbe_error_set(

@@ -74,14 +74,13 @@ abbe_result abbe_view_hidden_begin(abbe_view_hidden *h, const abbe_view_app_desc
   abbe_view_app_desc own = *desc;
   h->input = (abbe_ui_input){.mouse = {-1, -1}};
   if (own.wake == NULL) own.wake = wake;
-  abbe_result result = abbe_context_make(ABBE_CONTEXT_AUTO, &h->context, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_context_make(ABBE_CONTEXT_AUTO, &h->context, error));
   h->gl = abbe_context_gl(h->context);
   h->last_s = abbe_clock_seconds();
   h->framebuffer = h->colour = 0;
   abbe_view_hidden_resize(h, width, height);
   sem_init(&called, 0, 0);
-  result = abbe_view_app_begin(&h->session, &own, h->context, error);
+  abbe_result result = abbe_view_app_begin(&h->session, &own, h->context, error);
   if (result == ABBE_OK) return ABBE_OK;
   sem_destroy(&called);
   h->gl->DeleteFramebuffers(1, &h->framebuffer);

@@ -311,8 +311,8 @@ abbe_result abbe_view_keep_png(const abbe_view_session *session, const abbe_imag
                                    abbe_view_session_display(session, session->view, &names)};
   desc.display.exposure = session->state.exposure;
   desc.stated = true;
-  const abbe_result result = abbe_view_keep_check(session, path, error);
-  return result == ABBE_OK ? abbe_screen_png_write(path, image, &desc, error) : result;
+  ABBE_TRY(abbe_view_keep_check(session, path, error));
+  return abbe_screen_png_write(path, image, &desc, error);
 }
 
 /* What is looked at instead of the rendered picture. */

@@ -225,11 +225,10 @@ static abbe_result do_drag(script *s, abbe_error *error) {
 
 static abbe_result do_choose(script *s, abbe_error *error) {
   double xy[2];
-  abbe_result result = aim(s, 1, xy, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(aim(s, 1, xy, error));
   press_at(s, xy, 0);
   pump(s);
-  result = aim(s, 2, xy, error);
+  abbe_result result = aim(s, 2, xy, error);
   if (result == ABBE_OK) press_at(s, xy, 0);
   pump(s);
   return result;
@@ -239,8 +238,7 @@ static abbe_result do_choose(script *s, abbe_error *error) {
 static abbe_result do_slide(script *s, abbe_error *error) {
   double xy[2], x, y, width, height, share = 0;
   const char *end;
-  abbe_result result = aim(s, 1, xy, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(aim(s, 1, xy, error));
   if (s->words < 3 || !abbe_number_read(s->word[2], &end, &share) || share < 0 || share > 1)
     return fail(s, ABBE_PARSE, error, "how far? Give a share of its way, 0 to 1");
   if (!abbe_ui_find(s->word[1], &x, &y, &width, &height))
@@ -253,8 +251,7 @@ static abbe_result do_slide(script *s, abbe_error *error) {
 static abbe_result do_wheel(script *s, abbe_error *error) {
   double xy[2], clicks = 0;
   const char *end;
-  const abbe_result result = aim(s, 1, xy, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(aim(s, 1, xy, error));
   if (s->words < 3 || !abbe_number_read(s->word[2], &end, &clicks))
     return fail(s, ABBE_PARSE, error, "how many clicks?");
   point(s, xy);
@@ -365,8 +362,7 @@ static abbe_result do_remember(script *s, abbe_error *error) {
   char value[LONGEST];
   if (s->words < 3 || s->remembered_count == MOST_REMEMBERED)
     return fail(s, ABBE_PARSE, error, "a value, and a name for it");
-  const abbe_result result = value_of(s, s->word[1], value, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(value_of(s, s->word[1], value, error));
   memcpy(s->remembered[s->remembered_count].value, value, LONGEST);
   snprintf(s->remembered[s->remembered_count++].name, LONGEST, "%s", s->word[2]);
   return ABBE_OK;
@@ -404,8 +400,7 @@ static abbe_result do_assert(script *s, abbe_error *error) {
 static abbe_result do_say(script *s, abbe_error *error) {
   char value[LONGEST];
   for (size_t i = 1; i < s->words; i++) {
-    const abbe_result result = value_of(s, s->word[i], value, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(value_of(s, s->word[i], value, error));
     printf("%s %s\n", s->word[i], value);
   }
   return ABBE_OK;

@@ -363,8 +363,7 @@ static abbe_result start(server *s, unsigned port, abbe_error *error) {
   s->guard.token = s->token;
   s->guard.enter = enter;
   s->guard.user = s;
-  const abbe_result result = abbe_view_guard_begin(&s->guard, port, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_view_guard_begin(&s->guard, port, error));
   s->daemon = MHD_start_daemon(MHD_USE_THREAD_PER_CONNECTION | MHD_USE_INTERNAL_POLLING_THREAD |
                                    MHD_USE_ITC | MHD_USE_NO_LISTEN_SOCKET,
                                0, NULL, NULL, answer, s, MHD_OPTION_CONNECTION_LIMIT,
@@ -383,8 +382,7 @@ static abbe_result show(server *s, const abbe_view_app_desc *desc, size_t width,
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
   sigaction(SIGHUP, &action, NULL);
-  const abbe_result result = abbe_view_hidden_begin(&s->hidden, &own, width, height, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_view_hidden_begin(&s->hidden, &own, width, height, error));
   loop(s);
   abbe_view_hidden_end(&s->hidden);
   return ABBE_OK;

@@ -71,8 +71,7 @@ abbe_result abbe_view_session_choose_view(abbe_view_session *session, size_t vie
   abbe_display *made = NULL;
   abbe_display_desc desc = abbe_view_session_display(session, view, &names);
   desc.source_space = abbe_rgb_space_ocio_name(ABBE_RGB_SPACE_ACESCG);
-  const abbe_result result = abbe_display_make(&desc, &made, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_display_make(&desc, &made, error));
   abbe_view_painter_stop(session->painter);
   abbe_view_table_free(session->table);
   abbe_display_free(session->display);

@@ -43,8 +43,7 @@ static abbe_result make_ways(ways *out, abbe_error *error) {
     for (int k = 0; k < ABBE_GAMUT_MAP_COUNT; k++) {
       double xy[8];
       abbe_gamut_chromaticities((abbe_gamut)g, xy);
-      abbe_result result = abbe_gamut_map_make((abbe_gamut_map_kind)k, xy, &out->map[g][k], error);
-      if (result != ABBE_OK) return result;
+      ABBE_TRY(abbe_gamut_map_make((abbe_gamut_map_kind)k, xy, &out->map[g][k], error));
     }
   return ABBE_OK;
 }
@@ -140,10 +139,9 @@ abbe_result abbe_atlas_picture(const abbe_atlas *atlas, const char *path, abbe_e
   const size_t height = 2 * STRIP + GAP;
   abbe_image image = {0};
   abbe_gamut_map map;
-  abbe_result result = abbe_image_make(WIDE * atlas->count, height, 3, names, &image, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_image_make(WIDE * atlas->count, height, 3, names, &image, error));
   abbe_rgb_encoding_display_p3(image.xy, image.curve);
-  result = abbe_gamut_map_make(ABBE_GAMUT_MAP_WHITE, image.xy, &map, error);
+  abbe_result result = abbe_gamut_map_make(ABBE_GAMUT_MAP_WHITE, image.xy, &map, error);
   for (size_t y = 0; y < height && result == ABBE_OK; y++)
     for (size_t x = 0; x < image.width; x++) {
       const abbe_atlas_row *row = &atlas->row[x / WIDE];

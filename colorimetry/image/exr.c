@@ -87,8 +87,7 @@ static abbe_result read_attributes(exr_context_t context, int part, const abbe_e
                             "%s: it has more than %d text attributes, which is as many as can be "
                             "read",
                             s->path, ABBE_IMAGE_MAX_ATTRIBUTES);
-    abbe_result result = abbe_image_set_attribute(image, a->name, a->string->str, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_image_set_attribute(image, a->name, a->string->str, error));
   }
   return ABBE_OK;
 }

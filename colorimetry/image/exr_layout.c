@@ -93,8 +93,7 @@ abbe_result abbe_exr_fail_open(const abbe_exr_stream *s, exr_result_t rv, abbe_e
   int number = 0;
   for (int part = 0; s->io_errno == 0 && number >= 0; part++) {
     number = find_codec(s, part);
-    const abbe_result result = check_codec(s, number, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(check_codec(s, number, error));
   }
   return abbe_exr_fail(s, rv, error);
 }
@@ -236,7 +235,7 @@ abbe_result abbe_exr_layout_find(exr_context_t context, const abbe_exr_stream *s
   }
   if (rv != 0) return abbe_exr_fail(s, rv, error);
   if (best < 0) return no_such_part(context, s, l.parts, error);
-  abbe_result result = check_codec(s, find_codec(s, out->part), error);
-  if (result == ABBE_OK) result = check_tiles(context, s, out, error);
-  return result == ABBE_OK ? check_layout(s, out, error) : result;
+  ABBE_TRY(check_codec(s, find_codec(s, out->part), error));
+  ABBE_TRY(check_tiles(context, s, out, error));
+  return check_layout(s, out, error);
 }

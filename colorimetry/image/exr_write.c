@@ -179,8 +179,7 @@ static abbe_result check_image(const char *path, const abbe_image *image, abbe_e
 static abbe_result write_file(const char *path, const abbe_image *image, storage as,
                               abbe_error *error) {
   abbe_file_writer writer = {0};
-  abbe_result result = abbe_file_writer_open(&writer, path, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_file_writer_open(&writer, path, error));
   target t = {.path = path, .fd = fileno(writer.stream)};
   exr_result_t rv = write_image(&t, image, as);
   if (rv == EXR_ERR_SUCCESS && t.io_errno == 0) return abbe_file_writer_commit(&writer, error);
@@ -193,8 +192,7 @@ static abbe_result write_file(const char *path, const abbe_image *image, storage
 }
 
 abbe_result abbe_exr_write(const char *path, const abbe_image *image, abbe_error *error) {
-  abbe_result result = check_image(path, image, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_image(path, image, error));
   return write_file(path, image, (storage){.type = EXR_PIXEL_FLOAT, .unit = 1}, error);
 }
 
@@ -211,8 +209,7 @@ static double half_unit(const float *value, size_t count) {
 }
 
 abbe_result abbe_exr_write_half(const char *path, const abbe_image *image, abbe_error *error) {
-  abbe_result result = check_image(path, image, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_image(path, image, error));
   size_t count = image->width * image->height * image->channels;
   storage as = {.type = EXR_PIXEL_HALF, .unit = half_unit(image->data, count)};
   if (as.unit == 1) return write_file(path, image, as, error);
@@ -221,7 +218,7 @@ abbe_result abbe_exr_write_half(const char *path, const abbe_image *image, abbe_
   if (scaled.data == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for %zu samples", path, count);
   for (size_t i = 0; i < count; i++) scaled.data[i] = (float)((double)image->data[i] / as.unit);
-  result = write_file(path, &scaled, as, error);
+  abbe_result result = write_file(path, &scaled, as, error);
   free(scaled.data);
   return result;
 }

@@ -37,8 +37,7 @@ static abbe_result check_size(size_t width, size_t height, size_t channels,
 abbe_result abbe_image_make(size_t width, size_t height, size_t channels, const char *const *names,
                             abbe_image *out, abbe_error *error) {
   *out = (abbe_image){0};
-  abbe_result result = check_size(width, height, channels, names, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_size(width, height, channels, names, error));
 
   abbe_image image = {.width = width, .height = height, .channels = channels};
   image.display_window.x1 = (int32_t)width - 1;
@@ -181,13 +180,12 @@ static abbe_result check_append(const abbe_image *image, const abbe_image *other
 abbe_result abbe_image_append(abbe_image *image, const abbe_image *other, abbe_error *error) {
   const size_t first = image->channels, more = other->channels, all = first + more;
   abbe_image both = {0};
-  abbe_result result = check_append(image, other, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_append(image, other, error));
   const char **name = calloc(all + 1, sizeof *name);
   if (name == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for channels");
   for (size_t c = 0; c < all; c++)
     name[c] = c < first ? image->channel[c] : other->channel[c - first];
-  result = abbe_image_make(image->width, image->height, all, name, &both, error);
+  abbe_result result = abbe_image_make(image->width, image->height, all, name, &both, error);
   free(name);
   for (size_t i = 0; i < other->attribute_count && result == ABBE_OK; i++)
     if (find_attribute(image, other->attribute[i].name) == NULL)

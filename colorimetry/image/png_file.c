@@ -339,10 +339,9 @@ abbe_result abbe_png_read(const char *path, abbe_image *out, abbe_error *error) 
   *out = (abbe_image){0};
   FILE *file;
   size_t size = 0;
-  abbe_result result = abbe_file_open(path, &file, &size, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_file_open(path, &file, &size, error));
   job j = {.path = path, .file = file};
-  result = read_image(&j, (double)size, out, error);
+  abbe_result result = read_image(&j, (double)size, out, error);
   fclose(file);
   return result;
 }
@@ -378,9 +377,8 @@ static abbe_result find_text(const char *path, FILE *file, char **out, abbe_erro
 abbe_result abbe_png_read_text(const char *path, char **out, abbe_error *error) {
   FILE *file;
   *out = NULL;
-  abbe_result result = abbe_file_open(path, &file, NULL, error);
-  if (result != ABBE_OK) return result;
-  result = find_text(path, file, out, error);
+  ABBE_TRY(abbe_file_open(path, &file, NULL, error));
+  abbe_result result = find_text(path, file, out, error);
   fclose(file);
   return result;
 }

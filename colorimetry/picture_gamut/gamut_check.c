@@ -154,8 +154,7 @@ static abbe_result take_picture(const abbe_image *image, const char *name, abbe_
   if (!find_channels(image, at, &is_xyz))
     return abbe_error_set(error, ABBE_NOT_FOUND, "%s: it has no channels R, G, B nor X, Y, Z",
                           name);
-  abbe_result result = abbe_picture_space_find(image, is_xyz, name, &out->space, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_picture_space_find(image, is_xyz, name, &out->space, error));
   abbe_image_count_odd(image, at, 3, &out->odd);
   const size_t pixels = image->width * image->height;
   out->width = image->width;
@@ -255,8 +254,7 @@ static abbe_result find_costs(abbe_gamut_check *out, abbe_error *error) {
   for (int k = ABBE_GAMUT_MAP_CLIP; k < ABBE_GAMUT_MAP_COUNT; k++) {
     abbe_gamut_map map;
     abbe_gamut_cost *cost = &out->cost[k];
-    abbe_result result = abbe_gamut_map_make((abbe_gamut_map_kind)k, xy, &map, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_gamut_map_make((abbe_gamut_map_kind)k, xy, &map, error));
     for (size_t p = 0; p < out->width * out->height; p++) {
       double before[3], after[3];
       if (!is_outside(out, p)) continue;
@@ -302,8 +300,7 @@ abbe_result abbe_gamut_check_overlay(const abbe_gamut_check *check, const char *
   assert(check->xyz && check->excess);
   static const char *const names[] = {"R", "G", "B"};
   abbe_image image = {0};
-  abbe_result result = abbe_image_make(check->width, check->height, 3, names, &image, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_image_make(check->width, check->height, 3, names, &image, error));
   for (size_t p = 0; p < check->width * check->height; p++) {
     const double y = (double)check->xyz[p][1] / check->white_y;
     double rgb[3];
@@ -314,7 +311,7 @@ abbe_result abbe_gamut_check_overlay(const abbe_gamut_check *check, const char *
     for (size_t c = 0; c < 3; c++) image.data[3 * p + c] = (float)rgb[c];
   }
   abbe_rgb_encoding_srgb(image.xy, image.curve);
-  result = abbe_png_write(path, &image, 8, error);
+  abbe_result result = abbe_png_write(path, &image, 8, error);
   abbe_image_free(&image);
   return result;
 }

@@ -103,14 +103,13 @@ static abbe_result write_surface(cairo_surface_t *surface, const grid *g, FILE *
 
 static abbe_result write_panels(const char *path, const grid *g, abbe_error *error) {
   abbe_file_writer writer;
-  abbe_result result = abbe_file_writer_open(&writer, path, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_file_writer_open(&writer, path, error));
   bool svg = ends_with(path, ".svg");
   cairo_surface_t *surface =
       svg ? cairo_svg_surface_create_for_stream(write_bytes, writer.stream, (double)g->width,
                                                 (double)g->height)
           : cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)g->width, (int)g->height);
-  result = write_surface(surface, g, svg ? NULL : writer.stream, path, error);
+  abbe_result result = write_surface(surface, g, svg ? NULL : writer.stream, path, error);
   return abbe_file_writer_end(&writer, result, error);
 }
 

@@ -109,11 +109,10 @@ abbe_result abbe_chart_panel_make(const abbe_chart *chart, abbe_chart_panel *out
                             "series %zu of a chart has the colour %d; there are 1 to %d", i,
                             s->colour, 2 * ABBE_CHART_COLOURS);
   }
-  abbe_result result = make_axis(chart, false, &out->x, error);
-  if (result == ABBE_OK) result = make_axis(chart, true, &out->y, error);
-  if (result == ABBE_OK && chart->field != NULL)
-    result = make_scale(chart->field, &out->scale, error);
-  return result;
+  ABBE_TRY(make_axis(chart, false, &out->x, error));
+  ABBE_TRY(make_axis(chart, true, &out->y, error));
+  if (chart->field != NULL) ABBE_TRY(make_scale(chart->field, &out->scale, error));
+  return ABBE_OK;
 }
 
 /* ---- layout ---- */

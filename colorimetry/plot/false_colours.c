@@ -77,8 +77,7 @@ static abbe_result refuse(const abbe_image *image, const char *layer, const char
 static abbe_result errors_of_y(const abbe_image *image, const source *of, const char *name,
                                float *out, abbe_error *error) {
   abbe_picture_space space;
-  abbe_result result = abbe_picture_space_find(image, false, name, &space, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_picture_space_find(image, false, name, &space, error));
   for (size_t p = 0; p < image->width * image->height; p++) {
     double sum = 0;
     for (int k = 0; k < 3; k++)
@@ -176,16 +175,15 @@ abbe_result abbe_false_colours_write(const char *path, const abbe_image *image, 
   float *value;
   char label[400], title[400];
   bool is_error;
-  abbe_result result =
-      abbe_false_colours_values(image, layer, name, &value, label, sizeof label, &is_error, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(
+      abbe_false_colours_values(image, layer, name, &value, label, sizeof label, &is_error, error));
   snprintf(title, sizeof title, "%.300s", name);
   const abbe_false_colours_desc desc = {.width = image->width,
                                         .height = image->height,
                                         .is_error = is_error,
                                         .title = title,
                                         .label = label};
-  result = abbe_false_colours_draw(path, &desc, value, error);
+  abbe_result result = abbe_false_colours_draw(path, &desc, value, error);
   free(value);
   return result;
 }

@@ -108,8 +108,8 @@ static abbe_result add_material(sheet *s, size_t index, abbe_error *error) {
   abbe_result result =
       add_curve(s, &m->dispersion, m->min_nm, m->max_nm, ABBE_CHART_LINE, colour, m->name, error);
   if (result != ABBE_OK || !m->extrapolate) return result;
-  result = add_curve(s, &m->dispersion, s->from, m->min_nm, ABBE_CHART_DASHED, colour, NULL, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(
+      add_curve(s, &m->dispersion, s->from, m->min_nm, ABBE_CHART_DASHED, colour, NULL, error));
   return add_curve(s, &m->dispersion, m->max_nm, s->to, ABBE_CHART_DASHED, colour, NULL, error);
 }
 
@@ -373,7 +373,7 @@ abbe_result abbe_material_map_write(const char *path, const abbe_material_map *m
   for (size_t i = 0; i < map->marked_count && good; i++)
     missing += !add_spot(&s[map->table_count], map->marked[i]);
   if (left_out != NULL) *left_out = missing;
-  abbe_result result = good ? write_map(path, map, s, error) : no_memory(error);
+  ABBE_TRY(good ? write_map(path, map, s, error) : no_memory(error));
   for (size_t i = 0; i <= map->table_count; i++) free_spots(&s[i]);
-  return result;
+  return ABBE_OK;
 }

@@ -116,8 +116,7 @@ abbe_result abbe_sheet_chart(abbe_sheet *s, double x, double y, double width, do
   abbe_chart_panel panel;
   if (!(scale > 0))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a chart at %g times its size", scale);
-  abbe_result result = abbe_chart_panel_make(chart, &panel, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_chart_panel_make(chart, &panel, error));
   double left, right;
   cairo_save(s->cr);
   cairo_translate(s->cr, x, y);

@@ -105,8 +105,7 @@ static abbe_result put_frame(writing *w, png_frame *f, bool first, size_t count,
   bool pixels = false;
   for (;;) {
     chunk c = {0};
-    const abbe_result result = next_chunk(f, &c, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(next_chunk(f, &c, error));
     if (is(&c, "IEND")) return pixels ? ABBE_OK : no_png(f, error);
     if (is(&c, "IDAT")) {
       unsigned char sequence[4];
@@ -149,9 +148,8 @@ static abbe_result put_frames(writing *w, const char *const *paths, size_t count
 abbe_result abbe_animated_png_write(const char *path, const char *const *frame, size_t count,
                                     double per_second, abbe_error *error) {
   abbe_file_writer writer;
-  abbe_result result = abbe_file_writer_open(&writer, path, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_file_writer_open(&writer, path, error));
   writing w = {.to = writer.stream};
-  result = put_frames(&w, frame, count, per_second, error);
+  abbe_result result = put_frames(&w, frame, count, per_second, error);
   return abbe_file_writer_end(&writer, result, error);
 }

@@ -269,9 +269,8 @@ abbe_result abbe_gif_write(const char *path, const abbe_image *image, int bits, 
                           "%s: a GIF is sRGB, and this display is not; the other kinds of file say "
                           "their colour space",
                           path);
-  abbe_result result = abbe_screen_file_bytes(path, image, 3, &pixel, error);
-  if (result != ABBE_OK) return result;
-  result = begin(path, &writer, &g, error);
+  ABBE_TRY(abbe_screen_file_bytes(path, image, 3, &pixel, error));
+  abbe_result result = begin(path, &writer, &g, error);
   if (result == ABBE_OK) {
     g->width = image->width;
     g->height = image->height;

@@ -175,13 +175,12 @@ abbe_result abbe_lut_write(const abbe_lut_desc *given, const char *path, abbe_lu
   abbe_lut_desc desc = *given;
   if (desc.nodes == 0) desc.nodes = 33;
   if (desc.low == 0 && desc.high == 0) desc.low = -10, desc.high = 6.5;
-  abbe_result result = check(&desc, path, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check(&desc, path, error));
   shape s = {.a = 0.18 * exp2(desc.low)};
   s.span = log2(0.18 * exp2(desc.high) + s.a) - log2(s.a);
   abbe_image nodes = {0};
   abbe_file_writer writer = {0};
-  result = make_nodes(&desc, &s, &nodes, error);
+  abbe_result result = make_nodes(&desc, &s, &nodes, error);
   if (result == ABBE_OK) result = abbe_file_writer_open(&writer, path, error);
   if (result == ABBE_OK) {
     (strcasecmp(strrchr(path, '.'), ".cube") == 0 ? write_cube : write_clf)(&desc, &s, &nodes,

@@ -76,8 +76,7 @@ abbe_result abbe_screen_file_write(const char *path, const abbe_image *image, in
                                    abbe_error *error) {
   const abbe_screen_kind *kind = kind_or_png(path);
   const abbe_screen_file_needs needs = {.bits = bits, .transfer = image->transfer};
-  abbe_result result = abbe_screen_file_check(path, &needs, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_screen_file_check(path, &needs, error));
   const bool png = kind == &kinds[0];
   if (image->data == NULL || (!png && image->channels < 3))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: there are no R, G, B to write", path);
@@ -88,8 +87,7 @@ abbe_result abbe_screen_file_write(const char *path, const abbe_image *image, in
 abbe_result abbe_screen_file_move(const char *path, const char *const *frame, size_t count,
                                   double per_second, abbe_error *error) {
   const abbe_screen_file_needs needs = {.moves = true, .per_second = per_second};
-  const abbe_result result = abbe_screen_file_check(path, &needs, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_screen_file_check(path, &needs, error));
   if (count == 0 || count > 1000000)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: of %zu frames; 1 to 1000000 can move",
                           path, count);

@@ -50,9 +50,7 @@ static abbe_result pick_channels(const abbe_screen_png_desc *d, const abbe_image
   for (*triple = 0; *triple < TRIPLE_COUNT; ++*triple)
     if (find_triple(image, d->layer, *triple, at)) break;
   if (*triple == TRIPLE_COUNT) return no_triple(d, image, error);
-  abbe_result result =
-      abbe_image_make(image->width, image->height, 3, triples[TRIPLE_RGB], picked, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_image_make(image->width, image->height, 3, triples[TRIPLE_RGB], picked, error));
   for (size_t i = 0; i < image->width * image->height; i++)
     for (int k = 0; k < 3; k++)
       picked->data[3 * i + (size_t)k] = image->data[i * image->channels + at[k]];
@@ -105,9 +103,7 @@ static abbe_result find_source(const abbe_screen_png_desc *d, const abbe_image *
   abbe_picture_space found;
   *space = d->display.source_space;
   if (*space != NULL) return ABBE_OK;
-  const abbe_result result =
-      abbe_picture_space_find(image, triple == TRIPLE_XYZ, name_of(d), &found, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_picture_space_find(image, triple == TRIPLE_XYZ, name_of(d), &found, error));
   enter_space(&found, picked, space);
   if (d->notes != NULL) d->notes->space_assumed = found.assumed && triple == TRIPLE_RGB;
   return ABBE_OK;

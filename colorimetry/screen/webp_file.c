@@ -94,8 +94,7 @@ typedef struct moving {
 static abbe_result begin(moving *m, abbe_error *error) {
   WebPAnimEncoderOptions options;
   if (m->encoder != NULL) return ABBE_OK;
-  const abbe_result result = check_sides(m->path, m->width, m->height, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_sides(m->path, m->width, m->height, error));
   if (!WebPConfigInit(&m->config) || !WebPAnimEncoderOptionsInit(&options))
     return fail(m->path, "libwebp is of another version", error);
   m->config.quality = MOVING_QUALITY;

@@ -104,20 +104,19 @@ static abbe_result take_spectrum(const char *name, const abbe_spectral_view *vie
 
 static abbe_result fill(const abbe_image *image, const char *layer, const char *name,
                         const abbe_spectral_view *view, abbe_pixel_probe *p, abbe_error *error) {
-  abbe_result result = check_window(image, name, p->window, error);
-  if (result == ABBE_OK) result = take_channels(image, name, p, error);
-  if (result == ABBE_OK) result = take_colour(image, layer, name, p, error);
-  if (result == ABBE_OK)
-    result = abbe_spectral_channels_find(image, layer, name, &p->spectrum, error);
-  if (result == ABBE_OK && p->spectrum.count >= 2) result = take_spectrum(name, view, p, error);
-  if (result == ABBE_OK && !p->has_colour && p->spectrum.count == 0)
-    result =
-        abbe_error_set(error, ABBE_NOT_FOUND,
-                       "%s: it has neither R, G, B nor X, Y, Z nor bands%s%s%s; its first "
-                       "channel is '%s'",
-                       name, layer != NULL ? " in the layer '" : "", layer != NULL ? layer : "",
-                       layer != NULL ? "'" : "", image->channel[0]);
-  return result;
+  ABBE_TRY(check_window(image, name, p->window, error));
+  ABBE_TRY(take_channels(image, name, p, error));
+  ABBE_TRY(take_colour(image, layer, name, p, error));
+  ABBE_TRY(abbe_spectral_channels_find(image, layer, name, &p->spectrum, error));
+  if (p->spectrum.count >= 2) ABBE_TRY(take_spectrum(name, view, p, error));
+  if (!p->has_colour && p->spectrum.count == 0)
+    ABBE_TRY(abbe_error_set(error, ABBE_NOT_FOUND,
+                            "%s: it has neither R, G, B nor X, Y, Z nor bands%s%s%s; its first "
+                            "channel is '%s'",
+                            name, layer != NULL ? " in the layer '" : "",
+                            layer != NULL ? layer : "", layer != NULL ? "'" : "",
+                            image->channel[0]));
+  return ABBE_OK;
 }
 
 abbe_result abbe_pixel_probe_make(const abbe_image *image, const char *layer, const char *name,

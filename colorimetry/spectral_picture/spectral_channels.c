@@ -329,8 +329,7 @@ static abbe_result spectral_colour_check(const abbe_spectral_channels *c,
 abbe_result abbe_spectral_colour_weights(const abbe_spectral_channels *c,
                                          const abbe_spectral_view *view, const char *name,
                                          double (*weight)[3], abbe_error *error) {
-  abbe_result result = spectral_colour_check(c, view, name, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(spectral_colour_check(c, view, name, error));
   const bool reflective = c->kind == ABBE_SPECTRAL_REFLECTIVE;
   const bool absolute = !reflective && view->from == NULL;
   const abbe_illuminant *light = absolute ? &even : seen_light(c, view);

@@ -185,13 +185,13 @@ static abbe_result make_images(const work *w, abbe_error_bars *out, abbe_error *
   }
   const char *const errors[3] = {text[0], text[1], text[2]};
   size_t width = w->picture.width, height = w->picture.height;
-  abbe_result result = abbe_image_make(width, height, 3, errors, &out->error, error);
-  if (result == ABBE_OK) result = abbe_image_make(width, height, 3, name, &out->mean, error);
+  ABBE_TRY(abbe_image_make(width, height, 3, errors, &out->error, error));
+  ABBE_TRY(abbe_image_make(width, height, 3, name, &out->mean, error));
   memcpy(out->mean.xy, w->picture.xy, sizeof out->mean.xy);
-  for (size_t i = 0; i < w->picture.attribute_count && result == ABBE_OK; i++)
-    result = abbe_image_set_attribute(&out->mean, w->picture.attribute[i].name,
-                                      w->picture.attribute[i].text, error);
-  return result;
+  for (size_t i = 0; i < w->picture.attribute_count; i++)
+    ABBE_TRY(abbe_image_set_attribute(&out->mean, w->picture.attribute[i].name,
+                                      w->picture.attribute[i].text, error));
+  return ABBE_OK;
 }
 
 static void estimate(const work *w, abbe_error_bars *out) {
@@ -328,8 +328,7 @@ static abbe_result begin(work *w, abbe_renderer *renderer, size_t variants, abbe
   const bool cube = plan->light_view[w->request.map_layout_light].face >= 0;
   w->has_map = plan->caustics && (w->request.map_layout != NULL || !cube);
   abbe_renderer_map_layout(renderer, w->request.map_layout_light, &w->map);
-  abbe_result result = abbe_renderer_read(renderer, plan->desc.aovs, &w->picture, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_renderer_read(renderer, plan->desc.aovs, &w->picture, error));
   size_t values = 3 * w->picture.width * w->picture.height;
   w->difference = calloc(values, sizeof *w->difference);
   w->squares = calloc(values, sizeof *w->squares);
@@ -407,14 +406,13 @@ abbe_result abbe_error_picture_write(const char *path, const abbe_error_bars *ba
                                         .title = "One standard error, estimated",
                                         .label = "error of Y: radiance, W/(m2 sr)"};
   abbe_picture_space space;
-  abbe_result result = abbe_picture_space_find(&bars->mean, false, "the mean", &space, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_picture_space_find(&bars->mean, false, "the mean", &space, error));
   float *value = malloc(desc.width * desc.height * sizeof *value);
   if (value == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory for %zu errors",
                           desc.width * desc.height);
   errors_of_y(bars, space.to_xyz, value);
-  result = abbe_false_colours_draw(path, &desc, value, error);
+  abbe_result result = abbe_false_colours_draw(path, &desc, value, error);
   free(value);
   return result;
 }

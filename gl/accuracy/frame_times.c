@@ -54,8 +54,7 @@ abbe_result abbe_frame_times_baseline(abbe_renderer *renderer, size_t count, dou
   double all[MAX_TIMES];
   if (count < 1 || count > MAX_TIMES) count = count < 1 ? 1 : MAX_TIMES;
   for (size_t i = 0; i < count; i++) {
-    abbe_result result = abbe_renderer_baseline(renderer, &all[i], error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_renderer_baseline(renderer, &all[i], error));
   }
   qsort(all, count, sizeof *all, abbe_order_ascending);
   *ms = all[count / 2];
@@ -65,10 +64,10 @@ abbe_result abbe_frame_times_baseline(abbe_renderer *renderer, size_t count, dou
 static abbe_result time_change(abbe_renderer *renderer, const abbe_scene *scene,
                                const abbe_render_desc *desc, double *ms, abbe_error *error) {
   const double start = abbe_clock_seconds();
-  abbe_result result = abbe_renderer_change(renderer, scene, desc, error);
-  if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, NULL, error);
+  ABBE_TRY(abbe_renderer_change(renderer, scene, desc, error));
+  ABBE_TRY(abbe_renderer_frame(renderer, NULL, NULL, NULL, error));
   *ms = 1e3 * (abbe_clock_seconds() - start);
-  return result;
+  return ABBE_OK;
 }
 
 /* To the left by 1/64 of the distance to the target. */

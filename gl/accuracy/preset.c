@@ -76,21 +76,19 @@ static abbe_result get_counts(const reader *r, abbe_yaml_node node, abbe_render_
 
 static abbe_result read_point(const reader *r, abbe_yaml_node node, abbe_preset_point *out) {
   int fill = ABBE_FILL_BRIDGE, model = ABBE_MODEL_AUTO;
-  abbe_result result = get_counts(r, node, &out->desc);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_choice(r->yaml, node, "fill", fill_names, &fill, r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_choice(r->yaml, node, "model", model_names, &model, r->error);
+  ABBE_TRY(get_counts(r, node, &out->desc));
+  ABBE_TRY(abbe_yaml_get_choice(r->yaml, node, "fill", fill_names, &fill, r->error));
+  ABBE_TRY(abbe_yaml_get_choice(r->yaml, node, "model", model_names, &model, r->error));
   out->desc.fill = (abbe_fill)fill;
   out->desc.model = (abbe_model)model;
-  if (result == ABBE_OK) result = get_positive(r, node, "share", &out->desc.energy_share);
-  if (result == ABBE_OK && !(out->desc.energy_share > 0 && out->desc.energy_share <= 1))
-    result = abbe_yaml_fail(r->yaml, node, r->error, "the share may be above 0, to 1");
-  if (result == ABBE_OK) result = get_positive(r, node, "light_ms", &out->light_ms);
-  if (result == ABBE_OK) result = get_positive(r, node, "eye_ms", &out->eye_ms);
-  if (result == ABBE_OK) result = get_positive(r, node, "error", &out->error);
-  if (result == ABBE_OK) result = get_positive(r, node, "least", &out->least);
-  return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, node, "point", r->error) : result;
+  ABBE_TRY(get_positive(r, node, "share", &out->desc.energy_share));
+  if (!(out->desc.energy_share > 0 && out->desc.energy_share <= 1))
+    ABBE_TRY(abbe_yaml_fail(r->yaml, node, r->error, "the share may be above 0, to 1"));
+  ABBE_TRY(get_positive(r, node, "light_ms", &out->light_ms));
+  ABBE_TRY(get_positive(r, node, "eye_ms", &out->eye_ms));
+  ABBE_TRY(get_positive(r, node, "error", &out->error));
+  ABBE_TRY(get_positive(r, node, "least", &out->least));
+  return abbe_yaml_check_keys(r->yaml, node, "point", r->error);
 }
 
 /* The first point's time is measured again on every machine. */
@@ -111,8 +109,7 @@ static abbe_result read_points(const reader *r, abbe_yaml_node list, abbe_preset
   for (size_t i = 0; i < count; i++) {
     abbe_yaml_node node = abbe_yaml_item(r->yaml, list, i);
     abbe_preset_point *p = &out->point[i];
-    abbe_result result = read_point(r, node, p);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(read_point(r, node, p));
     widen(out, i > 0, p);
     bool rises = i == 0 || (p->light_ms + p->eye_ms >= p[-1].light_ms + p[-1].eye_ms &&
                             p->error <= p[-1].error);
@@ -128,15 +125,10 @@ static abbe_result read_points(const reader *r, abbe_yaml_node list, abbe_preset
 /* Without margins a front promises what was measured. */
 static abbe_result read_margins(const reader *r, abbe_yaml_node node, abbe_preset_front *out) {
   out->margin = out->time_margin = 1;
-  abbe_result result =
-      abbe_yaml_get_number(r->yaml, node, "margin", 1, 1e6, &out->margin, r->error);
-  if (result == ABBE_OK)
-    result =
-        abbe_yaml_get_number(r->yaml, node, "time_margin", 1, 1e6, &out->time_margin, r->error);
-  if (result == ABBE_OK)
-    result =
-        abbe_yaml_get_count(r->yaml, node, "margin_scenes", 0, 1000, &out->margin_scenes, r->error);
-  return result;
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, node, "margin", 1, 1e6, &out->margin, r->error));
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, node, "time_margin", 1, 1e6, &out->time_margin, r->error));
+  return abbe_yaml_get_count(r->yaml, node, "margin_scenes", 0, 1000, &out->margin_scenes,
+                             r->error);
 }
 
 static abbe_result copy_text(const reader *r, abbe_yaml_node node, const char *key, char *out,

@@ -152,12 +152,12 @@ abbe_result abbe_beam_list_make(const abbe_shader_variant *variant, abbe_beam_li
   abbe_shader_variant photons = *variant;
   list->chunks = 1;
   photons.hit_stride = list->caustics->trace.hits.stride;
-  abbe_result result = abbe_shader_variant_compute(
-      &photons, scene_of(list)->gpu, "beam_list.comp",
-      list->camera == NULL ? "#define IN_WORLD\n" : NULL, &list->program, error);
-  if (result == ABBE_OK) result = make_colours(list, error);
-  if (result == ABBE_OK) result = make_tints(list, error);
-  return result == ABBE_OK ? make_room(list, FIRST_BEAMS, error) : result;
+  ABBE_TRY(abbe_shader_variant_compute(&photons, scene_of(list)->gpu, "beam_list.comp",
+                                       list->camera == NULL ? "#define IN_WORLD\n" : NULL,
+                                       &list->program, error));
+  ABBE_TRY(make_colours(list, error));
+  ABBE_TRY(make_tints(list, error));
+  return make_room(list, FIRST_BEAMS, error);
 }
 
 void abbe_beam_list_free(abbe_beam_list *list) {

@@ -65,8 +65,7 @@ static abbe_result make_volume(abbe_shaft_grid *grid, size_t i, abbe_caustics *c
   v->grid = grid;
   v->beams = (abbe_beam_list){
       .caustics = caustics, .medium = plan_of(grid)->shaft[i].refractor, .cell_m = widest_cell(v)};
-  const abbe_result result = abbe_beam_list_make(variant, &v->beams, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_beam_list_make(variant, &v->beams, error));
   return abbe_gpu_make_buffer(grid->scene->gpu, cells * 6 * sizeof(GLint), NULL, &v->sums, error);
 }
 
@@ -76,15 +75,11 @@ abbe_result abbe_shaft_grid_make(abbe_caustics *caustics, const abbe_shader_vari
   *out = (abbe_shaft_grid){.scene = scene};
   const size_t count = scene->plan->shaft_count;
   for (size_t i = 0; i < count; i++) lay_out(out, i);
-  abbe_result result = abbe_gpu_compute(scene->gpu, "shaft_add.comp", NULL, &out->add, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_compute(scene->gpu, "shaft_resolve.comp", NULL, &out->resolve, error);
-  for (size_t i = 0; i < count && result == ABBE_OK; i++)
-    result = make_volume(out, i, caustics, variant, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, out->size[0], out->size[1], out->layers,
-                                   true, &out->texture, error);
-  return result;
+  ABBE_TRY(abbe_gpu_compute(scene->gpu, "shaft_add.comp", NULL, &out->add, error));
+  ABBE_TRY(abbe_gpu_compute(scene->gpu, "shaft_resolve.comp", NULL, &out->resolve, error));
+  for (size_t i = 0; i < count; i++) ABBE_TRY(make_volume(out, i, caustics, variant, error));
+  return abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, out->size[0], out->size[1], out->layers,
+                               true, &out->texture, error);
 }
 
 void abbe_shaft_grid_free(abbe_shaft_grid *grid) {

@@ -80,8 +80,7 @@ static abbe_result check_limits(const abbe_context *context, abbe_error *error) 
 static abbe_result check(abbe_context *context, abbe_gl_lookup lookup, abbe_error *error) {
   abbe_error missing = {0};
   const abbe_result loaded = abbe_gl_load(lookup, &context->gl, &missing);
-  const abbe_result result = check_version(context, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_version(context, error));
   if (loaded == ABBE_OK) return check_limits(context, error);
   return abbe_error_set(error, loaded, "%s: %s", context->description, missing.text);
 }

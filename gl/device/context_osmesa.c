@@ -89,8 +89,7 @@ abbe_result abbe_context_osmesa(abbe_context_native *out, abbe_error *error) {
                             OSMESA_RGBA,
                             0,
                             0};
-  abbe_result result = need_mesa(error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(need_mesa(error));
   out->lookup = lookup;
   out->make_current = make_current;
   out->destroy = destroy;

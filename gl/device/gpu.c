@@ -56,8 +56,7 @@ abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, G
   if (*out != 0) {
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);
   } else {
-    result = abbe_gl_check(gl, "what came before a buffer was allocated", error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_gl_check(gl, "what came before a buffer was allocated", error));
     result = allocate_buffer(gpu, room, out, error);
     if (result == ABBE_NO_MEMORY) {
       abbe_gpu_make_way(gpu);
@@ -112,9 +111,8 @@ static abbe_result make_storage(abbe_gpu *gpu, GLenum target, const abbe_stored_
     gl->BindTexture(target, *out);
     return ABBE_OK;
   }
-  abbe_result result = abbe_gl_check(gl, "what came before a texture was allocated", error);
-  if (result != ABBE_OK) return result;
-  result = allocate_storage(gl, target, key, out, error);
+  ABBE_TRY(abbe_gl_check(gl, "what came before a texture was allocated", error));
+  abbe_result result = allocate_storage(gl, target, key, out, error);
   if (result == ABBE_NO_MEMORY) {
     abbe_gpu_make_way(gpu);
     result = allocate_storage(gl, target, key, out, error);
@@ -145,9 +143,9 @@ abbe_result abbe_gpu_make_texture(abbe_gpu *gpu, GLenum format, size_t width, si
                                .height = height,
                                .layers = layers,
                                .levels = 1};
-  abbe_result result = make_storage(gpu, target, &key, out, error);
-  if (result == ABBE_OK) set_filter(gpu->gl, target, filter, filter);
-  return result;
+  ABBE_TRY(make_storage(gpu, target, &key, out, error));
+  set_filter(gpu->gl, target, filter, filter);
+  return ABBE_OK;
 }
 
 abbe_result abbe_gpu_make_levels(abbe_gpu *gpu, GLenum format, size_t side, size_t layers,
@@ -161,10 +159,9 @@ abbe_result abbe_gpu_make_levels(abbe_gpu *gpu, GLenum format, size_t side, size
                                .height = side,
                                .layers = layers,
                                .levels = levels};
-  abbe_result result = make_storage(gpu, GL_TEXTURE_2D_ARRAY, &key, out, error);
-  if (result == ABBE_OK)
-    set_filter(gpu->gl, GL_TEXTURE_2D_ARRAY, GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
-  return result;
+  ABBE_TRY(make_storage(gpu, GL_TEXTURE_2D_ARRAY, &key, out, error));
+  set_filter(gpu->gl, GL_TEXTURE_2D_ARRAY, GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
+  return ABBE_OK;
 }
 
 void abbe_gpu_drop_buffers(abbe_gpu *gpu, size_t count, GLuint *buffer) {
@@ -308,8 +305,7 @@ abbe_result abbe_gpu_make_texels(abbe_gpu *gpu, GLenum format, size_t size, cons
                                  int unit, GLuint *buffer, GLuint *texture, abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
   abbe_gpu_drop_buffers(gpu, 1, buffer);
-  abbe_result result = abbe_gpu_make_buffer(gpu, size, data, buffer, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_make_buffer(gpu, size, data, buffer, error));
   if (*texture == 0) gl->GenTextures(1, texture);
   gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
   gl->BindTexture(GL_TEXTURE_BUFFER, *texture);

@@ -29,12 +29,9 @@ static abbe_result make_targets(abbe_haze_pass *pass, abbe_error *error) {
   size_t room[2];
   room_of(pass, room);
   const size_t w = room[0], h = room[1];
-  abbe_result result =
-      abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, w, h, 0, false, &pass->scattered, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_texture(scene->gpu, GL_DEPTH_COMPONENT32F, w, h, 0, false, &pass->depth,
-                                   error);
-  return result;
+  ABBE_TRY(abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, w, h, 0, false, &pass->scattered, error));
+  return abbe_gpu_make_texture(scene->gpu, GL_DEPTH_COMPONENT32F, w, h, 0, false, &pass->depth,
+                               error);
 }
 
 /* The refractor that the camera is in, the last of several; -1: the air. */
@@ -123,8 +120,7 @@ static void set_size(const abbe_haze_pass *pass, GLuint program) {
 static abbe_result clear_target(abbe_haze_pass *pass, abbe_error *error) {
   static const GLfloat nothing[4] = {0, 0, 0, 0};
   const abbe_gl *gl = scene_of(pass)->gpu->gl;
-  const abbe_result result = set_target(pass, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(set_target(pass, error));
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   return ABBE_OK;
 }
@@ -148,8 +144,7 @@ static abbe_result draw_listed(void *user, size_t beams, abbe_error *error) {
   abbe_haze_pass *pass = user;
   const abbe_gpu_scene *scene = scene_of(pass);
   const abbe_gl *gl = scene->gpu->gl;
-  const abbe_result result = set_target(pass, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(set_target(pass, error));
   abbe_lighting_use(lighting_of(pass), pass->draw_beams);
   abbe_gpu_bind_texels(scene->gpu, pass->draw_beams, "beams", BEAM_UNIT, GL_RGBA32F,
                        pass->beams.beams);
@@ -178,9 +173,9 @@ abbe_result abbe_haze_pass_begin(abbe_haze_pass *pass, abbe_beam_use *draws, abb
 /* Where no other pass has done so for this picture. */
 static abbe_result draw_beams(abbe_haze_pass *pass, abbe_error *error) {
   abbe_beam_use draws;
-  abbe_result result = abbe_haze_pass_begin(pass, &draws, error);
-  if (result == ABBE_OK) result = abbe_light_layers_run(pass->caustics->layers, error);
-  return result == ABBE_OK ? abbe_beam_list_run(&draws, 1, error) : result;
+  ABBE_TRY(abbe_haze_pass_begin(pass, &draws, error));
+  ABBE_TRY(abbe_light_layers_run(pass->caustics->layers, error));
+  return abbe_beam_list_run(&draws, 1, error);
 }
 
 /* ---- the picture ---- */
@@ -189,8 +184,7 @@ static abbe_result draw_beams(abbe_haze_pass *pass, abbe_error *error) {
 static abbe_result draw_shine(abbe_haze_pass *pass, abbe_error *error) {
   const abbe_gpu_scene *scene = scene_of(pass);
   const abbe_gl *gl = scene->gpu->gl;
-  const abbe_result result = set_target(pass, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(set_target(pass, error));
   abbe_lighting_use(lighting_of(pass), pass->shine);
   abbe_gpu_bind_texture(scene->gpu, pass->shine, "picture", PICTURE_UNIT,
                         abbe_picture_texture(pass->picture));
@@ -215,9 +209,7 @@ static abbe_result lay_over(abbe_haze_pass *pass, abbe_error *error) {
   const GLuint pixels = picture->pixels != 0 ? picture->pixels : picture->receivers->colour;
   size_t size[2];
   abbe_picture_size(picture, size);
-  const abbe_result result =
-      abbe_gpu_set_target(scene->gpu, &pixels, &layer, 1, 0, size[0], size[1], error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_set_target(scene->gpu, &pixels, &layer, 1, 0, size[0], size[1], error));
   abbe_lighting_use(lighting_of(pass), pass->over);
   abbe_gpu_bind_texture(scene->gpu, pass->over, "scattered", PICTURE_UNIT, pass->scattered);
   gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);

@@ -63,9 +63,8 @@ static abbe_result fit_near_view(const abbe_light_fit *fit, size_t light, abbe_e
   for (int turn = 0; turn < TURNS; turn++) {
     GLuint found[4] = {0};
     /* What rays meet of meshes is read from the front layer of the view as it is now. */
-    abbe_result result =
-        fit->views->scene->plan->bvh ? abbe_light_layers_draw(fit->layers, light, error) : ABBE_OK;
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(fit->views->scene->plan->bvh ? abbe_light_layers_draw(fit->layers, light, error)
+                                          : ABBE_OK);
     find_lit(fit, light, found);
     if (found[0] > found[1]) break; /* nothing is lit */
     bool shrinks = false;
@@ -122,14 +121,11 @@ abbe_result abbe_light_layers_make(const abbe_photon_lights *views,
   out->views = views;
   out->faces = faces;
   out->side = side;
-  abbe_result result =
-      abbe_gpu_make_texture(gpu, GL_RGBA32F, side, side, 2 * lights, false, &out->layers, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_texture(gpu, GL_R16UI, side, side, lights, false, &out->owner, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_gpu_make_texture(gpu, GL_DEPTH_COMPONENT32F, side, side, 0, false, &out->depth, error);
-  return result;
+  ABBE_TRY(
+      abbe_gpu_make_texture(gpu, GL_RGBA32F, side, side, 2 * lights, false, &out->layers, error));
+  ABBE_TRY(abbe_gpu_make_texture(gpu, GL_R16UI, side, side, lights, false, &out->owner, error));
+  return abbe_gpu_make_texture(gpu, GL_DEPTH_COMPONENT32F, side, side, 0, false, &out->depth,
+                               error);
 }
 
 void abbe_light_layers_free(abbe_light_layers *layers) {

@@ -292,17 +292,13 @@ abbe_result abbe_photon_lights_make(const abbe_gpu_scene *scene, abbe_photon_lig
   out->wide = desc->photons * desc->photons * desc->wavelengths > MAX_NARROW_PHOTONS;
   size_map(out, scene->plan->caustics ? desc->map_size : 1);
   fit_views(out);
-  abbe_result result =
-      abbe_gpu_make_texels(scene->gpu, GL_RGBA32F, lights * ABBE_WARP_STEPS * 16, NULL, UNIT_WARPS,
-                           &out->warps, &out->warp_texels, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_buffer(scene->gpu, lights * desc->map_size * 8 * 4, NULL,
-                                  &out->texel_sizes, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_gpu_make_buffer(scene->gpu, lights * sizeof(gpu_light), NULL, &out->lights, error);
-  if (result == ABBE_OK) abbe_photon_lights_upload(out);
-  return result;
+  ABBE_TRY(abbe_gpu_make_texels(scene->gpu, GL_RGBA32F, lights * ABBE_WARP_STEPS * 16, NULL,
+                                UNIT_WARPS, &out->warps, &out->warp_texels, error));
+  ABBE_TRY(abbe_gpu_make_buffer(scene->gpu, lights * desc->map_size * 8 * 4, NULL,
+                                &out->texel_sizes, error));
+  ABBE_TRY(abbe_gpu_make_buffer(scene->gpu, lights * sizeof(gpu_light), NULL, &out->lights, error));
+  abbe_photon_lights_upload(out);
+  return ABBE_OK;
 }
 
 void abbe_photon_lights_free(abbe_photon_lights *views) {

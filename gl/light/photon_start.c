@@ -80,16 +80,11 @@ abbe_result abbe_photon_start_make(const abbe_photon_lights *views, const abbe_l
   const size_t side = views->scene->plan->desc.photons, cells = side * side;
   out->views = views;
   out->layers = layers;
-  abbe_result result = abbe_photon_cells_make(gpu, side, &out->cells, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_buffer(gpu, cells * 4, NULL, &out->photon_of_cell, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_buffer(gpu, ABBE_PHOTON_HEADER + cells * ABBE_PHOTON_BYTES, NULL,
-                                  &out->photons, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_shader_variant_compute(variant, gpu, "photon_cover.comp", NULL, &out->cover, error);
-  return result;
+  ABBE_TRY(abbe_photon_cells_make(gpu, side, &out->cells, error));
+  ABBE_TRY(abbe_gpu_make_buffer(gpu, cells * 4, NULL, &out->photon_of_cell, error));
+  ABBE_TRY(abbe_gpu_make_buffer(gpu, ABBE_PHOTON_HEADER + cells * ABBE_PHOTON_BYTES, NULL,
+                                &out->photons, error));
+  return abbe_shader_variant_compute(variant, gpu, "photon_cover.comp", NULL, &out->cover, error);
 }
 
 void abbe_photon_start_free(abbe_photon_start *start) {

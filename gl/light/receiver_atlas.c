@@ -206,8 +206,8 @@ abbe_result abbe_receiver_atlas_make(const abbe_photon_lights *views, abbe_shade
   out->views = views;
   if (!views->scene->plan->tiles) return ABBE_OK;
   out->used = out->fits = true;
-  abbe_result result = upload_charts(out, error);
-  return result == ABBE_OK ? tell_shaders(out, variant, error) : result;
+  ABBE_TRY(upload_charts(out, error));
+  return tell_shaders(out, variant, error);
 }
 
 void abbe_receiver_atlas_free(abbe_receiver_atlas *atlas) {

@@ -44,8 +44,8 @@ abbe_result abbe_method_run(abbe_method *m, bool lit, abbe_error *error) {
   char what[64];
   snprintf(what, sizeof what, "the %s profile", abbe_profile_name(m->scene->plan->desc.profile));
   abbe_gpu_scene_bind(m->scene);
-  const abbe_result result = m->kind->run(m, lit, error);
-  return result == ABBE_OK ? abbe_gl_check(m->scene->gpu->gl, what, error) : result;
+  ABBE_TRY(m->kind->run(m, lit, error));
+  return abbe_gl_check(m->scene->gpu->gl, what, error);
 }
 
 bool abbe_method_keeps_light(const abbe_render_desc *desc) {
@@ -83,9 +83,8 @@ abbe_result abbe_method_read(const abbe_method *m, abbe_image *out, abbe_error *
 
 abbe_result abbe_method_read_map(abbe_method *m, bool filled, abbe_image *out, abbe_error *error) {
   GLuint texture = 0;
-  const abbe_result result = m->kind->map(m, filled, &texture, error);
-  return result == ABBE_OK ? abbe_image_view_read_map(m->scene, texture, &m->layout, out, error)
-                           : result;
+  ABBE_TRY(m->kind->map(m, filled, &texture, error));
+  return abbe_image_view_read_map(m->scene, texture, &m->layout, out, error);
 }
 
 void abbe_method_count(const abbe_method *m, abbe_statistics *s) {

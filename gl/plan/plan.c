@@ -425,9 +425,8 @@ abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *
   const bool cut = scene->environment != NULL && !abbe_method_of(d.profile)->surroundings;
   const size_t others = cut ? d.environment_lights : 0;
   abbe_scene pointed;
-  result =
-      abbe_area_lights_add(scene, d.light_points, ABBE_SCENE_MAX_LIGHTS - others, &pointed, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(
+      abbe_area_lights_add(scene, d.light_points, ABBE_SCENE_MAX_LIGHTS - others, &pointed, error));
   const abbe_environment_lights_desc lights = {
       .count = others, .min_nm = d.min_nm, .max_nm = d.max_nm, .observer = d.observer};
   result = abbe_environment_lights_add(&pointed, &lights, before, out, error);
@@ -446,14 +445,12 @@ abbe_result abbe_plan_make_after(const abbe_plan *before, const abbe_scene *scen
   memset(out, 0, sizeof *out);
   out->inside = before->inside;
   out->shape = before->shape;
-  abbe_result result =
-      abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &out->desc, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(
+      abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &out->desc, error));
   if (!abbe_plan_surrounds(scene)) return make_plan(scene, desc, out, error);
   abbe_scene surrounded;
-  result = abbe_plan_surround(scene, desc, NULL, &surrounded, error);
-  if (result != ABBE_OK) return result;
-  result = make_plan(&surrounded, desc, out, error);
+  ABBE_TRY(abbe_plan_surround(scene, desc, NULL, &surrounded, error));
+  abbe_result result = make_plan(&surrounded, desc, out, error);
   abbe_environment_lights_drop(&surrounded);
   return result;
 }

@@ -221,9 +221,8 @@ static abbe_result plant(const grove *g, const double (*triangle)[9], const abbe
   if (!make_room(f, texels, h->triangle_count))
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy");
   *root = f->texel_count;
-  const abbe_result result = abbe_bvh_nodes_pack(h, triangle, f->texel_count, f->triangle_count,
-                                                 f->texel + f->texel_count, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_bvh_nodes_pack(h, triangle, f->texel_count, f->triangle_count,
+                               f->texel + f->texel_count, error));
   for (size_t i = 0; i < h->triangle_count; i++)
     store_triangle(g, h->triangle[i], &f->triangle[f->triangle_count + i],
                    &f->corners[f->triangle_count + i]);
@@ -304,15 +303,12 @@ static abbe_result upload_texels(abbe_gpu_scene *scene, int which, GLenum format
 }
 
 static abbe_result upload(abbe_gpu_scene *scene, const forest *f, abbe_error *error) {
-  abbe_result result =
-      upload_texels(scene, 0, GL_RGBA32UI, f->texel_count * sizeof *f->texel, f->texel, error);
-  if (result == ABBE_OK)
-    result = upload_texels(scene, 1, GL_RGBA32F, f->triangle_count * sizeof *f->triangle,
-                           f->triangle, error);
-  if (result == ABBE_OK)
-    result = upload_texels(scene, 2, GL_RGBA32F, f->triangle_count * sizeof *f->corners, f->corners,
-                           error);
-  return result;
+  ABBE_TRY(
+      upload_texels(scene, 0, GL_RGBA32UI, f->texel_count * sizeof *f->texel, f->texel, error));
+  ABBE_TRY(upload_texels(scene, 1, GL_RGBA32F, f->triangle_count * sizeof *f->triangle, f->triangle,
+                         error));
+  return upload_texels(scene, 2, GL_RGBA32F, f->triangle_count * sizeof *f->corners, f->corners,
+                       error);
 }
 
 /* A tree for each mesh that refracts. */

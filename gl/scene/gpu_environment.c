@@ -103,9 +103,8 @@ abbe_result abbe_gpu_environment_colours(const abbe_illuminant *illuminant, abbe
                                          const abbe_render_desc *desc, double matrix[9],
                                          abbe_error *error) {
   abbe_upsampling up;
-  abbe_result result =
-      abbe_upsampling_make_by(desc->observer, illuminant, desc->min_nm, desc->max_nm, &up, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(
+      abbe_upsampling_make_by(desc->observer, illuminant, desc->min_nm, desc->max_nm, &up, error));
   double from_xyz[9];
   abbe_rgb_space_from_xyz(space, from_xyz);
   for (int i = 0; i < 3; i++)
@@ -134,9 +133,7 @@ static float *convert(const double matrix[9], const float *rgb, size_t count, ab
 static abbe_result make_texture(abbe_gpu *gpu, const abbe_radiance_map *map, const double matrix[9],
                                 GLuint *out, abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
-  abbe_result result =
-      abbe_gpu_make_texture(gpu, GL_RGBA32F, map->width, map->height, 0, true, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_make_texture(gpu, GL_RGBA32F, map->width, map->height, 0, true, out, error));
   float *texel = convert(matrix, map->rgb, map->width * map->height, error);
   if (texel == NULL) return ABBE_NO_MEMORY;
   gl->BindTexture(GL_TEXTURE_2D, *out);
@@ -189,9 +186,8 @@ static abbe_result make_cube(abbe_gpu *gpu, const abbe_radiance_map *map, const 
   abbe_radiance_cube cube;
   size_t side = 1;
   while (side < ABBE_RADIANCE_CUBE_MAX_SIDE && 6 * side <= map->width) side *= 2;
-  abbe_result result = abbe_radiance_cube_make(map, side, &cube, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_gpu_environment_cube(gpu, &cube, matrix, out, error);
+  ABBE_TRY(abbe_radiance_cube_make(map, side, &cube, error));
+  abbe_result result = abbe_gpu_environment_cube(gpu, &cube, matrix, out, error);
   abbe_radiance_cube_free(&cube);
   return result;
 }
@@ -213,12 +209,12 @@ abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_scene *scene, ab
   const abbe_environment *e = scene->environment;
   if (e == NULL) return ABBE_OK;
   double matrix[9];
-  abbe_result result = abbe_gpu_environment_colours(&e->illuminant, space, desc, matrix, error);
-  if (result == ABBE_OK) result = make_texture(gpu, &e->map, matrix, &out->texture, error);
-  if (result == ABBE_OK) result = make_cube(gpu, &e->map, matrix, &out->cube, error);
-  if (result == ABBE_OK && scene->soft_light != NULL)
-    result = make_soft_light(gpu, scene->soft_light, matrix, &out->soft_light, error);
-  return result;
+  ABBE_TRY(abbe_gpu_environment_colours(&e->illuminant, space, desc, matrix, error));
+  ABBE_TRY(make_texture(gpu, &e->map, matrix, &out->texture, error));
+  ABBE_TRY(make_cube(gpu, &e->map, matrix, &out->cube, error));
+  if (scene->soft_light != NULL)
+    ABBE_TRY(make_soft_light(gpu, scene->soft_light, matrix, &out->soft_light, error));
+  return ABBE_OK;
 }
 
 void abbe_gpu_environment_free(abbe_gpu *gpu, abbe_gpu_environment *environment) {

@@ -43,8 +43,7 @@ static abbe_result fill_tables(work *w, const abbe_reflected_light *light,
                            one || j == 2 ? object->reflectance[2] : 0};
     w->used += ABBE_BAND_REFLECTION_CELLS;
     if (object->spectrum != NULL && j > 0) continue; /* it has one channel alone */
-    abbe_result result = abbe_band_reflection_fill(light, object->spectrum, rgb, cell, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_band_reflection_fill(light, object->spectrum, rgb, cell, error));
   }
   return ABBE_OK;
 }

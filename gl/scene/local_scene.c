@@ -130,8 +130,7 @@ abbe_result abbe_local_scene_scale_light(abbe_local_scene *local, abbe_error *er
   for (size_t i = 0; i < local->scene->light_count; i++)
     most = fmax(most, local->scene->light[i].power);
   if (!(most > 0) || (most >= faint && most <= bright)) return ABBE_OK;
-  const abbe_result result = abbe_local_scene_repeat_lights(local, NULL, 0, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_local_scene_repeat_lights(local, NULL, 0, error));
   local->unit = ldexp(1, ilogb(most));
   for (size_t i = 0; i < local->copy.light_count; i++) local->copy.light[i].power /= local->unit;
   local->copy.ambient /= local->unit;

@@ -78,8 +78,7 @@ abbe_result abbe_matched_physics(const abbe_scene *scene, double min_nm, double 
                                  abbe_physics *out, abbe_error *error) {
   abbe_plan plan;
   const abbe_render_desc desc = {.min_nm = min_nm, .max_nm = max_nm};
-  abbe_result result = abbe_plan_make(scene, &desc, &plan, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_plan_make(scene, &desc, &plan, error));
   *out = (abbe_physics){.matched = true,
                         .orders = plan.desc.exits,
                         .energy_share = plan.desc.energy_share,

@@ -62,19 +62,16 @@ static abbe_result read_render(const reader *r, abbe_yaml_node node, abbe_pictur
                 {"samples", 4, &d->supersample},
                 {"upsample", 4, &d->upsample},
                 {"exits", ABBE_RENDER_MAX_EXITS, &d->exits}};
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < sizeof counts / sizeof *counts && result == ABBE_OK; i++)
-    result = get_count(r, node, counts[i].key, counts[i].most, counts[i].out);
-  if (result == ABBE_OK) result = get_above_0(r, node, "share", &d->energy_share);
-  if (result == ABBE_OK && d->energy_share > 1)
-    result = abbe_yaml_fail(r->yaml, node, r->error, "the share may be above 0, to 1");
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_choice(r->yaml, node, "fill", fill_names, &fill, r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_choice(r->yaml, node, "model", model_names, &model, r->error);
+  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+    ABBE_TRY(get_count(r, node, counts[i].key, counts[i].most, counts[i].out));
+  ABBE_TRY(get_above_0(r, node, "share", &d->energy_share));
+  if (d->energy_share > 1)
+    ABBE_TRY(abbe_yaml_fail(r->yaml, node, r->error, "the share may be above 0, to 1"));
+  ABBE_TRY(abbe_yaml_get_choice(r->yaml, node, "fill", fill_names, &fill, r->error));
+  ABBE_TRY(abbe_yaml_get_choice(r->yaml, node, "model", model_names, &model, r->error));
   d->fill = (abbe_fill)fill;
   d->model = (abbe_model)model;
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result read_point(const reader *r, abbe_yaml_node node, abbe_picture_tool tool,
@@ -101,8 +98,7 @@ static abbe_result read_points(const reader *r, abbe_yaml_node list, abbe_pictur
   for (size_t i = 0; i < count; i++) {
     abbe_yaml_node node = abbe_yaml_item(r->yaml, list, i);
     abbe_picture_point *p = &out->point[out->count];
-    abbe_result result = read_point(r, node, tool, p);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(read_point(r, node, tool, p));
     if (i > 0 && !(p->ms >= p[-1].ms && p->worst <= p[-1].worst))
       return abbe_yaml_fail(r->yaml, node, r->error,
                             "the points of a front stand in the order of rising time and falling "
@@ -119,27 +115,23 @@ static abbe_result read_tool(const reader *r, abbe_yaml_node pictures, abbe_pict
   abbe_yaml_node node = abbe_yaml_get(r->yaml, pictures, tool_names[tool]), list;
   out->margin[tool] = out->time_margin[tool] = 1;
   if (node.id == 0) return ABBE_OK;
-  abbe_result result = abbe_yaml_require(r->yaml, node, "front", &list, r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(r->yaml, node, "margin", 1, 1e6, &out->margin[tool], r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(r->yaml, node, "time_margin", 1, 1e6, &out->time_margin[tool],
-                                  r->error);
-  if (result == ABBE_OK) result = read_points(r, list, tool, out);
-  return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, node, "tool", r->error) : result;
+  ABBE_TRY(abbe_yaml_require(r->yaml, node, "front", &list, r->error));
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, node, "margin", 1, 1e6, &out->margin[tool], r->error));
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, node, "time_margin", 1, 1e6, &out->time_margin[tool],
+                                r->error));
+  ABBE_TRY(read_points(r, list, tool, out));
+  return abbe_yaml_check_keys(r->yaml, node, "tool", r->error);
 }
 
 static abbe_result read_front(const reader *r, abbe_yaml_node node, abbe_picture_front *out) {
-  abbe_result result = get_above_0(r, node, "base_ms", &out->base_ms);
-  if (result == ABBE_OK) result = get_above_0(r, node, "base_error", &out->base_error);
-  if (result == ABBE_OK)
-    result =
-        abbe_yaml_get_count(r->yaml, node, "margin_scenes", 0, 1000, &out->margin_scenes, r->error);
-  for (int i = 0; i < ABBE_PICTURE_TOOL_COUNT && result == ABBE_OK; i++)
-    result = read_tool(r, node, (abbe_picture_tool)i, out);
-  if (result == ABBE_OK && out->count == 0)
-    result = abbe_yaml_fail(r->yaml, node, r->error, "'pictures' has no tool");
-  return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, node, "pictures", r->error) : result;
+  ABBE_TRY(get_above_0(r, node, "base_ms", &out->base_ms));
+  ABBE_TRY(get_above_0(r, node, "base_error", &out->base_error));
+  ABBE_TRY(
+      abbe_yaml_get_count(r->yaml, node, "margin_scenes", 0, 1000, &out->margin_scenes, r->error));
+  for (int i = 0; i < ABBE_PICTURE_TOOL_COUNT; i++)
+    ABBE_TRY(read_tool(r, node, (abbe_picture_tool)i, out));
+  if (out->count == 0) ABBE_TRY(abbe_yaml_fail(r->yaml, node, r->error, "'pictures' has no tool"));
+  return abbe_yaml_check_keys(r->yaml, node, "pictures", r->error);
 }
 
 /* The class in the file, or an absent node. */
@@ -163,8 +155,7 @@ static abbe_result read_class(const reader *r, const char *path, abbe_preset_cla
                               abbe_picture_front *out) {
   abbe_yaml_node node, pictures = {0};
   char *scenes = NULL;
-  abbe_result result = find_class(r, of, &node);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(find_class(r, of, &node));
   if (node.id != 0) pictures = abbe_yaml_get(r->yaml, node, "pictures");
   if (pictures.id == 0)
     return abbe_error_set(r->error, ABBE_UNSUPPORTED,
@@ -172,7 +163,7 @@ static abbe_result read_class(const reader *r, const char *path, abbe_preset_cla
                           "--processes",
                           path != NULL ? path : "the shipped presets", abbe_preset_class_name(of));
   out->of = of;
-  result = abbe_yaml_get_string(r->yaml, node, "scenes", &scenes, r->error);
+  abbe_result result = abbe_yaml_get_string(r->yaml, node, "scenes", &scenes, r->error);
   if (result == ABBE_OK && scenes != NULL) snprintf(out->scenes, sizeof out->scenes, "%s", scenes);
   free(scenes);
   return result == ABBE_OK ? read_front(r, pictures, out) : result;
@@ -285,8 +276,7 @@ static abbe_result choose(abbe_picture_choice *c, const abbe_scene *scene, abbe_
   yardstick y = {1, 1};
   candidates all;
   c->timed = c->request.timed || c->request.budget_ms > 0;
-  abbe_result result = needs_yardstick(c) ? measure(c, scene, &y, error) : ABBE_OK;
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(needs_yardstick(c) ? measure(c, scene, &y, error) : ABBE_OK);
   c->timed = c->timed || c->spent_ms > 0;
   find_candidates(c, &y, &all);
   if (all.count == 0)
@@ -308,9 +298,9 @@ abbe_result abbe_picture_choose(const abbe_picture_request *request, const abbe_
   if (request->name == NULL && !(request->max_error > 0) && !(request->budget_ms > 0))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "neither a name, an error nor a time is asked for");
-  abbe_result result = abbe_plan_make(scene, NULL, &plan, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_picture_front_load(request->file, abbe_preset_class_of(&plan), &out->front, error);
+  ABBE_TRY(abbe_plan_make(scene, NULL, &plan, error));
+  abbe_result result =
+      abbe_picture_front_load(request->file, abbe_preset_class_of(&plan), &out->front, error);
   abbe_plan_free(&plan);
   return result == ABBE_OK ? choose(out, scene, error) : result;
 }

@@ -21,8 +21,7 @@ typedef struct frame {
 static abbe_result filter(abbe_image *picture, abbe_error *error) {
   abbe_image filtered = {0};
   const abbe_denoise_desc desc = {0};
-  abbe_result result = abbe_denoise_picture(picture, &desc, &filtered, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_denoise_picture(picture, &desc, &filtered, error));
   abbe_image_free(picture);
   *picture = filtered;
   return ABBE_OK;
@@ -78,9 +77,8 @@ static int compare_frames(const void *a, const void *b) {
 
 static abbe_result copy_image(const abbe_image *in, abbe_image *out) {
   const size_t count = in->width * in->height * in->channels;
-  abbe_result result = abbe_image_make(in->width, in->height, in->channels,
-                                       (const char *const *)in->channel, out, NULL);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_image_make(in->width, in->height, in->channels, (const char *const *)in->channel,
+                           out, NULL));
   memcpy(out->data, in->data, count * sizeof *out->data);
   memcpy(out->xy, in->xy, sizeof out->xy);
   return ABBE_OK;

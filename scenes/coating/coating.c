@@ -43,8 +43,7 @@ static abbe_result layer_at(const abbe_coating_layer *l, double lambda_nm, abbe_
 abbe_result abbe_coating_at(const abbe_coating *coating, double lambda_nm,
                             abbe_film_layer layer[ABBE_FILM_MOST_LAYERS], abbe_error *error) {
   for (size_t i = 0; i < coating->count; i++) {
-    const abbe_result result = layer_at(&coating->layer[i], lambda_nm, &layer[i], error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(layer_at(&coating->layer[i], lambda_nm, &layer[i], error));
   }
   return ABBE_OK;
 }
@@ -54,8 +53,7 @@ abbe_result abbe_coating_straight(const abbe_coating *coating, double n, bool in
                                   abbe_error *error) {
   abbe_film_layer layer[ABBE_FILM_MOST_LAYERS];
   abbe_film_light light;
-  const abbe_result result = abbe_coating_at(coating, lambda_nm, layer, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_coating_at(coating, lambda_nm, layer, error));
   const double to[2] = {inside ? 1 : n, 0};
   abbe_film_light_at(layer, coating->count, inside, inside ? n : 1, to, 1, lambda_nm, &light);
   abbe_film_unpolarised(&light, reflected, transmitted);

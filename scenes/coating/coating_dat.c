@@ -107,11 +107,8 @@ static abbe_result read_points(reading *r, abbe_coating_layer *out) {
     count++;
   }
   if (count == 0) return FAIL(r, ABBE_PARSE, "the material '%s' has no points", name);
-  const abbe_result result =
-      abbe_spectrum_make(nm, n, count, ABBE_INTERPOLATION_LINEAR, &out->n, r->error);
-  return result == ABBE_OK
-             ? abbe_spectrum_make(nm, k, count, ABBE_INTERPOLATION_LINEAR, &out->k, r->error)
-             : result;
+  ABBE_TRY(abbe_spectrum_make(nm, n, count, ABBE_INTERPOLATION_LINEAR, &out->n, r->error));
+  return abbe_spectrum_make(nm, k, count, ABBE_INTERPOLATION_LINEAR, &out->k, r->error);
 }
 
 /* A layer's thickness: um, or waves of primary_nm in it. */
@@ -126,8 +123,7 @@ static abbe_result take_thickness(const reading *r, double thickness, bool absol
                   "the layer of '%s' is %g waves thick: say of which wavelength, in nm, such as "
                   "'primary: 550' beside the file",
                   r->word[0], thickness);
-    const abbe_result result = abbe_coating_at(coating, primary_nm, at, r->error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_coating_at(coating, primary_nm, at, r->error));
     layer->nm = thickness * primary_nm / at[coating->count - 1].n;
   }
   if (layer->nm >= 0 && layer->nm <= ABBE_FILM_MOST_NM) return ABBE_OK;
@@ -194,8 +190,7 @@ static abbe_result read_coating(reading *r, const char *text, const char *name, 
                           r->path, name, names[0] != '\0' ? names : "none");
   }
   while (next_line(r) && !begins_section(r)) {
-    const abbe_result result = read_layer(r, text, primary_nm, table, out);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(read_layer(r, text, primary_nm, table, out));
   }
   if (out->count > 0) return ABBE_OK;
   return FAIL(r, ABBE_SCHEMA, "the coating '%s' has no layers", name);
@@ -212,10 +207,9 @@ abbe_result abbe_coating_dat_read(const char *path, const char *name, double pri
                           "%.300s is an encrypted coating, which only its maker's program reads: "
                           "ask the maker for its layers, as a COATING.DAT has them",
                           path);
-  abbe_result result = abbe_file_read_text(path, MOST_BYTES, &text, &size, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_file_read_text(path, MOST_BYTES, &text, &size, error));
   reading r = {.path = path, .error = error};
-  result = read_coating(&r, text, name, primary_nm, table, out);
+  abbe_result result = read_coating(&r, text, name, primary_nm, table, out);
   free(text);
   return result;
 }

@@ -156,8 +156,6 @@ abbe_result abbe_cut_check(const abbe_cut *cut, abbe_error *error) {
   if (cut->facet_count < 4)
     return abbe_error_set(error, ABBE_SCHEMA, "%zu facets enclose nothing; a stone has at least 4",
                           cut->facet_count);
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < cut->facet_count && result == ABBE_OK; i++)
-    result = check_facet(cut, i, error);
-  return result;
+  for (size_t i = 0; i < cut->facet_count; i++) ABBE_TRY(check_facet(cut, i, error));
+  return ABBE_OK;
 }

@@ -129,8 +129,7 @@ static void read_folds(reading *r, char *at) {
 
 static abbe_result read_refraction(reading *r, char *at, abbe_error *error) {
   double n;
-  const abbe_result result = want(r, &at, "the refractive index", &n, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(want(r, &at, "the refractive index", &n, error));
   if (n > 1 && n < 100)
     r->cut->refractive_index = n;
   else
@@ -380,8 +379,7 @@ static void write_tier(const abbe_cut *cut, size_t t, FILE *to, abbe_report *rep
 
 abbe_result abbe_cut_asc_write(const abbe_cut *cut, FILE *to, abbe_report *report,
                                abbe_error *error) {
-  const abbe_result result = abbe_cut_check(cut, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_cut_check(cut, error));
   fprintf(to, "GemCad 5.0\ng %d ", cut->gear);
   write_number(to, cut->offset, 1);
   if (cut->folds > 0) fprintf(to, "\ny %d %c", cut->folds, cut->mirror ? 'y' : 'n');

@@ -484,8 +484,7 @@ abbe_result abbe_cut_diagram_write(const char *path, const abbe_cut *cut,
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: a diagram wants a name that ends with .pdf, .svg or .png", path);
   abbe_cut_measures_make(cut, polyhedron, &s.m);
-  abbe_result result = abbe_file_writer_open(&writer, path, error);
-  if (result != ABBE_OK) return result;
-  result = write_sheet(&s, path, writer.stream, error);
+  ABBE_TRY(abbe_file_writer_open(&writer, path, error));
+  abbe_result result = write_sheet(&s, path, writer.stream, error);
   return abbe_file_writer_end(&writer, result, error);
 }

@@ -40,8 +40,7 @@ abbe_result abbe_cut_file_read_stone(const char *path, double weld, abbe_cut *cu
                                      abbe_error *error) {
   abbe_error why;
   memset(stone, 0, sizeof *stone);
-  abbe_result result = abbe_cut_file_read(path, cut, report, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_cut_polyhedron_make(cut, weld, stone, &why);
+  ABBE_TRY(abbe_cut_file_read(path, cut, report, error));
+  abbe_result result = abbe_cut_polyhedron_make(cut, weld, stone, &why);
   return result == ABBE_OK ? result : abbe_error_set(error, result, "%s: %s", path, why.text);
 }

@@ -460,8 +460,7 @@ abbe_result abbe_cut_gcs_write(const abbe_cut *cut, const abbe_cut_polyhedron *p
                                abbe_report *report, abbe_error *error) {
   const double reach = fmax(fmax(p->max[0], -p->min[0]), fmax(p->max[1], -p->min[1]));
   const writing w = {cut, p, to, 1 / reach, 0.5 * (p->min[2] + p->max[2])};
-  const abbe_result result = check_depths(&w, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_depths(&w, error));
   fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<GemCutStudio version=\"1000\">\n", to);
   fprintf(to, "  <index gear=\"%d\" symmetry=\"%d\" mirror=\"%d\"/>\n", cut->gear, cut->folds,
           cut->mirror);

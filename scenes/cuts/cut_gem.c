@@ -59,8 +59,7 @@ static abbe_result take_doubles(reading *r, double *out, size_t count, const cha
 }
 
 static abbe_result take_whole(reading *r, int32_t *out, const char *what, abbe_error *error) {
-  const abbe_result result = need(r, 4, what, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(need(r, 4, what, error));
   const uint32_t bits = (uint32_t)bits_at(r->data + r->at, 4);
   memcpy(out, &bits, sizeof bits);
   r->at += 4;
@@ -70,11 +69,9 @@ static abbe_result take_whole(reading *r, int32_t *out, const char *what, abbe_e
 /* A length and as many bytes. */
 static abbe_result take_text(reading *r, const char **text, size_t *length, const char *what,
                              abbe_error *error) {
-  abbe_result result = need(r, 1, what, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(need(r, 1, what, error));
   *length = r->data[r->at++];
-  result = need(r, *length, what, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(need(r, *length, what, error));
   *text = (const char *)r->data + r->at;
   r->at += *length;
   return ABBE_OK;
@@ -288,8 +285,7 @@ static void put_facet(const abbe_cut *cut, size_t i, const abbe_cut_polyhedron *
 
 abbe_result abbe_cut_gem_write(const abbe_cut *cut, const abbe_cut_polyhedron *p, FILE *to,
                                abbe_report *report, abbe_error *error) {
-  const abbe_result result = abbe_cut_check(cut, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_cut_check(cut, error));
   size_t next = 0;
   for (size_t i = 0; i < cut->facet_count; i++) {
     const bool has = next < p->face_count && p->face[next].facet == i;

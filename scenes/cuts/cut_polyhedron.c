@@ -342,8 +342,7 @@ static abbe_result close_faces(abbe_cut_polyhedron *p, double share, abbe_error 
 abbe_result abbe_cut_polyhedron_make(const abbe_cut *cut, double share, abbe_cut_polyhedron *out,
                                      abbe_error *error) {
   memset(out, 0, sizeof *out);
-  abbe_result result = abbe_cut_check(cut, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_cut_check(cut, error));
   if (share == 0) share = ABBE_CUT_WELD;
   if (!(share > 0 && share <= ABBE_CUT_MOST_WELD))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -351,7 +350,7 @@ abbe_result abbe_cut_polyhedron_make(const abbe_cut *cut, double share, abbe_cut
                           "%g",
                           share, ABBE_CUT_MOST_WELD);
   work w = {.cut = cut};
-  result = gather(&w, out, error);
+  abbe_result result = gather(&w, out, error);
   if (result == ABBE_OK) result = find_meets(&w, error);
   if (result == ABBE_OK) result = weld(&w, share, out, error);
   if (result == ABBE_OK) result = make_faces(&w, out, error);

@@ -192,8 +192,7 @@ static abbe_result put_json(const solid *s, const abbe_material *material, FILE 
       "\"KHR_materials_dispersion\"],",
       to);
   const double width = k * fmin(max[0] - min[0], max[1] - min[1]);
-  abbe_result result = put_material(material, width, to, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(put_material(material, width, to, error));
   fputs("\"meshes\":[{\"name\":\"stone\",\"primitives\":[{\"attributes\":{\"POSITION\":0,"
         "\"NORMAL\":1},\"indices\":2,\"material\":0}]}],",
         to);

@@ -52,8 +52,7 @@ static abbe_result colours_of(const char *path, const abbe_image *image, size_t 
   if (!rgb && !xyz && !find_channels(image, (const char *const[3]){"Y", "Y", "Y"}, channel))
     return abbe_error_set(error, ABBE_NOT_FOUND,
                           "%s: it has no channels R, G and B, or X, Y and Z, or Y", path);
-  const abbe_result result = abbe_picture_space_find(image, xyz, path, &space, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_picture_space_find(image, xyz, path, &space, error));
   *assumed = rgb && space.assumed;
   abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, from_xyz);
   for (int i = 0; i < 3; i++) {
@@ -68,8 +67,7 @@ static abbe_result colours_of(const char *path, const abbe_image *image, size_t 
 static abbe_result convert(const char *path, abbe_image *image, bool *assumed, abbe_error *error) {
   size_t channel[3];
   double matrix[9];
-  const abbe_result result = colours_of(path, image, channel, matrix, assumed, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(colours_of(path, image, channel, matrix, assumed, error));
   abbe_image_odd odd;
   abbe_image_count_odd(image, channel, 3, &odd);
   bool same = true;
@@ -217,10 +215,9 @@ static abbe_result from_cube(const abbe_image *image, abbe_radiance_map *out, ab
 
 static abbe_result from_latlong(const abbe_image *image, abbe_radiance_map *out,
                                 abbe_error *error) {
-  const abbe_result result = abbe_radiance_map_make(image->width, out, error);
-  if (result == ABBE_OK)
-    memcpy(out->rgb, image->data, 3 * image->width * image->height * sizeof *out->rgb);
-  return result;
+  ABBE_TRY(abbe_radiance_map_make(image->width, out, error));
+  memcpy(out->rgb, image->data, 3 * image->width * image->height * sizeof *out->rgb);
+  return ABBE_OK;
 }
 
 abbe_result abbe_environment_picture_read(const char *path, abbe_environment_layout layout,

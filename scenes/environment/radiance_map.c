@@ -206,8 +206,7 @@ abbe_result abbe_radiance_map_halve(const abbe_radiance_map *map, abbe_radiance_
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a map of %zu x %zu texels is too small to be halved", map->width,
                           map->height);
-  const abbe_result result = abbe_radiance_map_make(2 * (map->height / 2), out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_radiance_map_make(2 * (map->height / 2), out, error));
   const double wide = (double)map->width / (double)out->width;
   const double high = (double)map->height / (double)out->height;
   for (size_t row = 0; row < out->height; row++)

@@ -175,9 +175,7 @@ static abbe_result add_texture(building *b, const abbe_object *o, cJSON *materia
                                abbe_error *error) {
   char *data = NULL;
   size_t size = 0;
-  const abbe_result result =
-      abbe_file_read(o->texture_path, ABBE_PNG_FREE_BYTES, &data, &size, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_file_read(o->texture_path, ABBE_PNG_FREE_BYTES, &data, &size, error));
   const size_t from = b->size;
   fwrite(data, 1, size, b->bytes);
   free(data);

@@ -65,8 +65,7 @@ static abbe_result fit_cauchy(const abbe_material *m, double value[3], abbe_erro
   double count = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (double nm = ABBE_WAVELENGTH_MIN_NM; nm <= ABBE_WAVELENGTH_MAX_NM; nm += 1) {
     double n = 0;
-    const abbe_result result = index_held(m, nm, &n, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(index_held(m, nm, &n, error));
     const double at = inverse_square(nm);
     count += 1, x += at, y += n, xx += at * at, xy += at * n;
   }
@@ -78,12 +77,11 @@ static abbe_result fit_cauchy(const abbe_material *m, double value[3], abbe_erro
 
 static abbe_result fit_abbe(const abbe_material *m, double value[3], abbe_error *error) {
   double n_f = 0, n_c = 0;
-  abbe_result result = index_held(m, LINE_D_NM, &value[0], error);
-  if (result == ABBE_OK) result = index_held(m, LINE_F_NM, &n_f, error);
-  if (result == ABBE_OK) result = index_held(m, LINE_C_NM, &n_c, error);
-  if (result == ABBE_OK)
-    value[1] = value[0] > 1 && n_f > n_c ? 20 * (n_f - n_c) / (value[0] - 1) : 0;
-  return result;
+  ABBE_TRY(index_held(m, LINE_D_NM, &value[0], error));
+  ABBE_TRY(index_held(m, LINE_F_NM, &n_f, error));
+  ABBE_TRY(index_held(m, LINE_C_NM, &n_c, error));
+  value[1] = value[0] > 1 && n_f > n_c ? 20 * (n_f - n_c) / (value[0] - 1) : 0;
+  return ABBE_OK;
 }
 
 static abbe_result fit(const abbe_material *m, double lambda_nm, abbe_export_index *out,
@@ -146,6 +144,6 @@ abbe_result abbe_export_index_make(const abbe_material *material, abbe_export_fo
                       &ignored, NULL) != ABBE_OK ||
       abbe_material_n(material, form == ABBE_EXPORT_FORM_TABLE ? last_nm : ABBE_WAVELENGTH_MAX_NM,
                       &ignored, NULL) != ABBE_OK;
-  const abbe_result result = fit(material, lambda_nm, out, error);
-  return result == ABBE_OK ? measure(material, out, error) : result;
+  ABBE_TRY(fit(material, lambda_nm, out, error));
+  return measure(material, out, error);
 }

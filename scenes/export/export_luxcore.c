@@ -218,11 +218,9 @@ abbe_result abbe_export_luxcore(const abbe_export_writing *w, abbe_error *error)
           w->files->name);
   write_camera(w);
   for (size_t i = 0; i < w->report->glass_count; i++) write_glass(w, i);
-  abbe_result result = add_settings(w, error);
-  for (size_t i = 0; i < w->scene->light_count && result == ABBE_OK; i++)
-    result = write_light(w, i, error);
-  if (result == ABBE_OK && w->scene->environment != NULL) result = write_environment(w, error);
-  for (size_t i = 0; i < w->scene->object_count && result == ABBE_OK; i++)
-    result = write_object(w, i, error);
-  return result;
+  ABBE_TRY(add_settings(w, error));
+  for (size_t i = 0; i < w->scene->light_count; i++) ABBE_TRY(write_light(w, i, error));
+  if (w->scene->environment != NULL) ABBE_TRY(write_environment(w, error));
+  for (size_t i = 0; i < w->scene->object_count; i++) ABBE_TRY(write_object(w, i, error));
+  return ABBE_OK;
 }

@@ -254,8 +254,7 @@ static void put_corner(abbe_mesh *mesh, size_t i, const abbe_light *light, const
 
 abbe_result abbe_export_light_mesh(const abbe_light *light, abbe_mesh *out, abbe_error *error) {
   const size_t sides = light->kind == ABBE_LIGHT_DISK ? ABBE_EXPORT_DISK_SIDES : 4;
-  const abbe_result result = abbe_mesh_make(sides, sides - 2, false, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_mesh_make(sides, sides - 2, false, out, error));
   if (light->kind == ABBE_LIGHT_DISK) {
     const double step = 2 * ABBE_PI / (double)sides;
     const double radius = light->radius * sqrt(step / sin(step));
@@ -327,9 +326,9 @@ void abbe_export_mirror_rgb(const abbe_object *mirror, double rgb[3]) {
 
 static abbe_result make_picture(size_t width, size_t height, abbe_image *out, abbe_error *error) {
   static const char *const channels[] = {"R", "G", "B"};
-  const abbe_result result = abbe_image_make(width, height, 3, channels, out, error);
-  if (result == ABBE_OK) abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_REC709, out->xy);
-  return result;
+  ABBE_TRY(abbe_image_make(width, height, 3, channels, out, error));
+  abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_REC709, out->xy);
+  return ABBE_OK;
 }
 
 abbe_result abbe_export_environment(const abbe_export_writing *w, size_t width, size_t height,
@@ -339,8 +338,7 @@ abbe_result abbe_export_environment(const abbe_export_writing *w, size_t width, 
   const abbe_environment *e = w->scene->environment;
   double white[3];
   abbe_image picture;
-  const abbe_result result = make_picture(width, height, &picture, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(make_picture(width, height, &picture, error));
   abbe_export_light_rgb(&e->illuminant, white);
   for (size_t i = 0; i < width * height; i++) {
     double sum[3] = {0};
@@ -376,8 +374,7 @@ abbe_result abbe_export_texture(const abbe_export_writing *w, const abbe_object 
   const abbe_image *from = &object->texture;
   char suffix[ABBE_EXPORT_NAME_SIZE + 8];
   abbe_image picture;
-  const abbe_result result = make_picture(from->width, from->height, &picture, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(make_picture(from->width, from->height, &picture, error));
   for (size_t i = 0; i < from->width * from->height; i++)
     for (size_t c = 0; c < 3; c++)
       picture.data[3 * i + c] =

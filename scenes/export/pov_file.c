@@ -30,8 +30,7 @@ abbe_result abbe_pov_file_glass(const abbe_material *material, const abbe_illumi
   memset(out, 0, sizeof *out);
   for (int i = 0; i <= STEPS; i++) {
     lambda_nm[i] = ABBE_POVRAY_VIOLET_NM + i;
-    const abbe_result result = abbe_material_n(material, lambda_nm[i], &n[i], error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_material_n(material, lambda_nm[i], &n[i], error));
     light[i] = light_at(illuminant, lambda_nm[i]);
   }
   out->index = abbe_povray_index_fit(lambda_nm, n, light, STEPS + 1);
@@ -245,9 +244,7 @@ static void write_absorption(const writing *w, const abbe_material *material) {
 
 static abbe_result write_refractor(const writing *w, const abbe_object *object, abbe_error *error) {
   abbe_pov_glass glass;
-  const abbe_result result =
-      abbe_pov_file_glass(object->material, abbe_scene_illuminant(w->scene), &glass, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_pov_file_glass(object->material, abbe_scene_illuminant(w->scene), &glass, error));
   comment(w, "refractor", object->name);
   abbe_number_write(w->file, "// %s: off by %.2g at the most (%g nm), by %.2g in the mean\n",
                     object->material->name, glass.worst, glass.worst_nm, glass.rms);

@@ -36,9 +36,7 @@ static abbe_result add_glass(const survey *s, const abbe_material *m, double lam
   if (all == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a report");
   r->glass = all;
   abbe_scene_export_glass *g = &all[r->glass_count];
-  const abbe_result result =
-      abbe_export_index_make(m, forms[s->target], lambda_nm, &g->index, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_export_index_make(m, forms[s->target], lambda_nm, &g->index, error));
   g->material = m;
   r->glass_count++;
   if (g->index.held)
@@ -262,9 +260,8 @@ abbe_result abbe_scene_export_write(const char *path, const abbe_scene *scene,
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the wavelength of the one index is from 380 to 780 nm, not %g",
                           lambda_nm);
-  abbe_result result = abbe_scene_check(scene, error);
-  if (result == ABBE_OK) result = export_survey(scene, target, lambda_nm, report, error);
+  ABBE_TRY(abbe_scene_check(scene, error));
+  ABBE_TRY(export_survey(scene, target, lambda_nm, report, error));
   const abbe_export_writing w = {.scene = scene, .target = target, .report = report};
-  if (result == ABBE_OK) result = write_all(path, &w, error);
-  return result;
+  return write_all(path, &w, error);
 }

@@ -10,9 +10,7 @@
 static abbe_result read_size(abbe_yaml *yaml, abbe_yaml_node node, abbe_camera *out,
                              abbe_error *error) {
   double size[2] = {512, 512};
-  const abbe_result result =
-      abbe_yaml_get_numbers(yaml, node, "size", 2, 1, ABBE_IMAGE_MAX_SIDE, size, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_yaml_get_numbers(yaml, node, "size", 2, 1, ABBE_IMAGE_MAX_SIDE, size, error));
   out->width = (size_t)size[0];
   out->height = (size_t)size[1];
   if ((double)out->width != size[0] || (double)out->height != size[1])
@@ -24,13 +22,12 @@ static abbe_result read_size(abbe_yaml *yaml, abbe_yaml_node node, abbe_camera *
 static abbe_result read_side(abbe_yaml *yaml, abbe_yaml_node node, double out[3],
                              abbe_error *error) {
   double up = 60, around = -90;
-  abbe_result result = abbe_yaml_get_number(yaml, node, "elevation", -89.9, 89.9, &up, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, node, "azimuth", -3600, 3600, &around, error);
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "elevation", -89.9, 89.9, &up, error));
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "azimuth", -3600, 3600, &around, error));
   out[0] = cos(up * ABBE_DEGREE) * cos(around * ABBE_DEGREE);
   out[1] = cos(up * ABBE_DEGREE) * sin(around * ABBE_DEGREE);
   out[2] = sin(up * ABBE_DEGREE);
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result read_frame(abbe_yaml *yaml, abbe_yaml_node node, abbe_error *error) {
@@ -66,9 +63,9 @@ static abbe_result read_lens(abbe_yaml *yaml, abbe_yaml_node node, double *focal
   if (abbe_yaml_get(yaml, node, "fov").id != 0)
     return abbe_yaml_fail(yaml, lens, error,
                           "a 'lens' on 24 mm of film has its own angle: leave out the 'fov'");
-  const abbe_result result = abbe_yaml_get_choice(yaml, node, "lens", lenses, &which, error);
+  ABBE_TRY(abbe_yaml_get_choice(yaml, node, "lens", lenses, &which, error));
   *focal = lengths[which];
-  return result;
+  return ABBE_OK;
 }
 
 /* Of a thin lens that is sharp at that distance: the film is as far behind it as it is then. */
@@ -160,12 +157,12 @@ static abbe_result mark(const abbe_yaml *yaml, abbe_yaml_node node, const abbe_s
 static abbe_result mark_all(abbe_yaml *yaml, abbe_yaml_node frame, const abbe_scene *scene,
                             bool framed[ABBE_SCENE_MAX_OBJECTS], abbe_error *error) {
   if (!abbe_yaml_is_sequence(yaml, frame)) return mark(yaml, frame, scene, "frame", framed, error);
-  abbe_result result = abbe_yaml_count(yaml, frame) > 0
-                           ? ABBE_OK
-                           : abbe_yaml_fail(yaml, frame, error, "'frame' names no object");
-  for (size_t i = 0; i < abbe_yaml_count(yaml, frame) && result == ABBE_OK; i++)
-    result = mark(yaml, abbe_yaml_item(yaml, frame, i), scene, "frame", framed, error);
-  return result;
+  ABBE_TRY(abbe_yaml_count(yaml, frame) > 0
+               ? ABBE_OK
+               : abbe_yaml_fail(yaml, frame, error, "'frame' names no object"));
+  for (size_t i = 0; i < abbe_yaml_count(yaml, frame); i++)
+    ABBE_TRY(mark(yaml, abbe_yaml_item(yaml, frame, i), scene, "frame", framed, error));
+  return ABBE_OK;
 }
 
 /* The camera's directions: right, up, and back, towards the camera. */

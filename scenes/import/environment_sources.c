@@ -16,14 +16,13 @@ static abbe_result read_illuminant(abbe_yaml *yaml, abbe_yaml_node node, const c
                                    abbe_environment *out, abbe_error *error) {
   abbe_upsampling ignored;
   double line[ABBE_ILLUMINANT_MOST_LINES];
-  abbe_result result = abbe_scene_value_illuminant(yaml, node, folder, &out->illuminant,
-                                                   &out->illuminant_path, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_scene_value_illuminant(yaml, node, folder, &out->illuminant, &out->illuminant_path,
+                                       error));
   if (abbe_illuminant_lines(&out->illuminant, line) > 0)
     return abbe_yaml_fail(yaml, abbe_yaml_get(yaml, node, "illuminant"), error,
                           "'illuminant': surroundings have no light of lines; lights may have it");
-  result = abbe_upsampling_make(&out->illuminant, ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM,
-                                &ignored, error);
+  abbe_result result = abbe_upsampling_make(&out->illuminant, ABBE_WAVELENGTH_MIN_NM,
+                                            ABBE_WAVELENGTH_MAX_NM, &ignored, error);
   const abbe_yaml_node at = abbe_yaml_get(yaml, node, "illuminant");
   return result == ABBE_OK ? result : abbe_scene_value_locate(yaml, at, result, error);
 }
@@ -86,11 +85,11 @@ static abbe_result read_size(abbe_yaml *yaml, abbe_yaml_node node, abbe_environm
   size_t size = DEFAULT_SIZE;
   if (layout.id)
     return abbe_yaml_fail(yaml, layout, error, "'layout' says nothing without a 'file'");
-  abbe_result result = abbe_yaml_get_count(yaml, node, "size", LEAST_SIZE, MOST_SIZE, &size, error);
-  if (result == ABBE_OK && size % 2 != 0)
-    result = abbe_yaml_fail(yaml, abbe_yaml_get(yaml, node, "size"), error,
-                            "'size' is the map's width in texels, an even number");
-  return result == ABBE_OK ? abbe_radiance_map_make(size, &out->map, error) : result;
+  ABBE_TRY(abbe_yaml_get_count(yaml, node, "size", LEAST_SIZE, MOST_SIZE, &size, error));
+  if (size % 2 != 0)
+    ABBE_TRY(abbe_yaml_fail(yaml, abbe_yaml_get(yaml, node, "size"), error,
+                            "'size' is the map's width in texels, an even number"));
+  return abbe_radiance_map_make(size, &out->map, error);
 }
 
 static abbe_result read_scale(abbe_yaml *yaml, abbe_yaml_node node, abbe_radiance_map *map,
@@ -140,24 +139,24 @@ static abbe_result read_colour(const abbe_yaml *yaml, abbe_yaml_node node, const
 static abbe_result require_colour(const reading *r, abbe_yaml_node node, const char *key,
                                   double out[3], abbe_error *error) {
   abbe_yaml_node value;
-  const abbe_result result = abbe_yaml_require(r->yaml, node, key, &value, error);
-  return result == ABBE_OK ? read_colour(r->yaml, value, key, out, error) : result;
+  ABBE_TRY(abbe_yaml_require(r->yaml, node, key, &value, error));
+  return read_colour(r->yaml, value, key, out, error);
 }
 
 /* Degrees, as radians; an absent key leaves *out. */
 static abbe_result read_angle(const reading *r, abbe_yaml_node node, const char *key, double least,
                               double most, double *out, abbe_error *error) {
   double degrees = *out / ABBE_DEGREE;
-  const abbe_result result = abbe_yaml_get_number(r->yaml, node, key, least, most, &degrees, error);
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, node, key, least, most, &degrees, error));
   *out = degrees * ABBE_DEGREE;
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result require_angle(const reading *r, abbe_yaml_node node, const char *key,
                                  double least, double most, double *out, abbe_error *error) {
   abbe_yaml_node ignored;
-  const abbe_result result = abbe_yaml_require(r->yaml, node, key, &ignored, error);
-  return result == ABBE_OK ? read_angle(r, node, key, least, most, out, error) : result;
+  ABBE_TRY(abbe_yaml_require(r->yaml, node, key, &ignored, error));
+  return read_angle(r, node, key, least, most, out, error);
 }
 
 /* Where a source stands: 'elevation' and 'azimuth', or 'towards'. Up is the direction in which
@@ -214,8 +213,7 @@ static abbe_result read_sky_type(const reading *r, abbe_yaml_node node, int *out
                                  abbe_error *error) {
   abbe_yaml_node value;
   double number = 0;
-  abbe_result result = abbe_yaml_require(r->yaml, node, "type", &value, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_yaml_require(r->yaml, node, "type", &value, error));
   const char *text = abbe_yaml_text(r->yaml, value);
   *out = text && strcmp(text, "clear") == 0      ? ABBE_SKY_CLEAR
          : text && strcmp(text, "overcast") == 0 ? ABBE_SKY_OVERCAST
@@ -226,7 +224,7 @@ static abbe_result read_sky_type(const reading *r, abbe_yaml_node node, int *out
                           "'type' is clear, overcast, or the number of one of the CIE's standard "
                           "skies, 1 to %d",
                           ABBE_SKY_TYPES);
-  result = abbe_yaml_number(r->yaml, value, "type", 1, ABBE_SKY_TYPES, &number, error);
+  abbe_result result = abbe_yaml_number(r->yaml, value, "type", 1, ABBE_SKY_TYPES, &number, error);
   *out = (int)number;
   if (result == ABBE_OK && number != *out)
     result = abbe_yaml_fail(r->yaml, value, error, "'type' wants a whole number");

@@ -51,36 +51,34 @@ static abbe_result read_cone(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *o
                              abbe_error *error) {
   double cone = 0.0, soft = 0.0;
   abbe_yaml_node ignored;
-  abbe_result result = abbe_yaml_require(yaml, node, "cone", &ignored, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "cone", 0.001, 85, &cone, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "soft", 0, cone, &soft, error);
+  ABBE_TRY(abbe_yaml_require(yaml, node, "cone", &ignored, error));
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "cone", 0.001, 85, &cone, error));
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "soft", 0, cone, &soft, error));
   out->cone_rad = cone * ABBE_DEGREE;
   out->soft_rad = soft * ABBE_DEGREE;
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result read_radius(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
                                abbe_error *error) {
   abbe_yaml_node value;
-  abbe_result result = abbe_yaml_require(yaml, node, "radius", &value, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_length(yaml, node, "radius", 0, ABBE_SCENE_FAR, &out->radius, error);
-  if (result == ABBE_OK && !(out->radius > 0.0))
-    result =
+  ABBE_TRY(abbe_yaml_require(yaml, node, "radius", &value, error));
+  ABBE_TRY(abbe_yaml_get_length(yaml, node, "radius", 0, ABBE_SCENE_FAR, &out->radius, error));
+  if (!(out->radius > 0.0))
+    ABBE_TRY(
         abbe_yaml_fail(yaml, value, error,
-                       "'radius' is zero; a disk has an area (a light without one is a point)");
-  return result;
+                       "'radius' is zero; a disk has an area (a light without one is a point)"));
+  return ABBE_OK;
 }
 
 static abbe_result read_side(abbe_yaml *yaml, abbe_yaml_node node, const char *key, double *out,
                              abbe_error *error) {
   abbe_yaml_node value;
-  abbe_result result = abbe_yaml_require(yaml, node, key, &value, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_length(yaml, node, key, 0, ABBE_SCENE_FAR, out, error);
-  if (result == ABBE_OK && !(*out > 0.0))
-    result = abbe_yaml_fail(yaml, value, error, "'%s' is zero; a rectangle has an area", key);
-  return result;
+  ABBE_TRY(abbe_yaml_require(yaml, node, key, &value, error));
+  ABBE_TRY(abbe_yaml_get_length(yaml, node, key, 0, ABBE_SCENE_FAR, out, error));
+  if (!(*out > 0.0))
+    ABBE_TRY(abbe_yaml_fail(yaml, value, error, "'%s' is zero; a rectangle has an area", key));
+  return ABBE_OK;
 }
 
 /* The height grows along z, or along y where the light looks along z; roll turns it about the
@@ -104,10 +102,9 @@ static abbe_result read_rectangle(abbe_yaml *yaml, abbe_yaml_node node, abbe_lig
 
 static abbe_result refuse_sides(abbe_yaml *yaml, abbe_yaml_node node, int kind, abbe_error *error) {
   static const char *const keys[] = {"width", "height", "roll"};
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < 3 && result == ABBE_OK; i++)
-    result = refuse_key(yaml, node, keys[i], kind, "a rectangle light has", error);
-  return result;
+  for (int i = 0; i < 3; i++)
+    ABBE_TRY(refuse_key(yaml, node, keys[i], kind, "a rectangle light has", error));
+  return ABBE_OK;
 }
 
 static abbe_result read_shape_of_light(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,

@@ -70,7 +70,7 @@ abbe_result abbe_object_read_axes(const abbe_object_reading *r, abbe_object *out
                           "'axis' is the optic axis of a uniaxial crystal; the material '%s' has "
                           "three indices: give 'axes', such as {x: [1, 0, 0], z: [0, 0, 1]}",
                           out->material->name);
-  const abbe_result result = read_direction(r, r->node, "axis", out->axis, error);
-  if (result == ABBE_OK) abbe_object_square_axes(out);
-  return result;
+  ABBE_TRY(read_direction(r, r->node, "axis", out->axis, error));
+  abbe_object_square_axes(out);
+  return ABBE_OK;
 }

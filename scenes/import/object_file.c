@@ -20,15 +20,14 @@ static abbe_result read_rotate(abbe_yaml *yaml, abbe_yaml_node node, double out[
                                abbe_error *error) {
   double axis[3] = {0}, angle = 0.0;
   abbe_yaml_node ignored;
-  abbe_result result = abbe_scene_value_point(yaml, node, "axis", axis, error);
-  if (result == ABBE_OK) result = abbe_yaml_require(yaml, node, "angle", &ignored, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, node, "angle", -3600, 3600, &angle, error);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "'rotate'", error);
-  if (result == ABBE_OK && !(abbe_vector_length(axis) > 0.0))
-    result = abbe_yaml_fail(yaml, node, error, "'axis' is zero; it must point somewhere");
-  if (result == ABBE_OK) abbe_transform_rotate(angle * ABBE_DEGREE, axis, out);
-  return result;
+  ABBE_TRY(abbe_scene_value_point(yaml, node, "axis", axis, error));
+  ABBE_TRY(abbe_yaml_require(yaml, node, "angle", &ignored, error));
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "angle", -3600, 3600, &angle, error));
+  ABBE_TRY(abbe_yaml_check_keys(yaml, node, "'rotate'", error));
+  if (!(abbe_vector_length(axis) > 0.0))
+    ABBE_TRY(abbe_yaml_fail(yaml, node, error, "'axis' is zero; it must point somewhere"));
+  abbe_transform_rotate(angle * ABBE_DEGREE, axis, out);
+  return ABBE_OK;
 }
 
 /* The origin goes to `from`, +z points to `to`, +y as near to `up` as that leaves. */
@@ -75,8 +74,7 @@ static abbe_result read_step(abbe_yaml *yaml, abbe_yaml_node step, double out[16
   const abbe_yaml_node rotate = abbe_yaml_get(yaml, step, "rotate");
   const abbe_yaml_node scale = abbe_yaml_get(yaml, step, "scale");
   const abbe_yaml_node look = abbe_yaml_get(yaml, step, "look");
-  abbe_result result = abbe_yaml_check_keys(yaml, step, "a step of 'transform'", error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_yaml_check_keys(yaml, step, "a step of 'transform'", error));
   if (abbe_yaml_count(yaml, step) != 1)
     return abbe_yaml_fail(yaml, step, error,
                           "a step of 'transform' is one of translate, rotate, scale, look");
@@ -84,7 +82,7 @@ static abbe_result read_step(abbe_yaml *yaml, abbe_yaml_node step, double out[16
   if (scale.id) return read_scale(yaml, step, out, error);
   if (look.id) return read_look(yaml, look, out, error);
   (void)translate;
-  result = abbe_scene_value_point(yaml, step, "translate", offset, error);
+  abbe_result result = abbe_scene_value_point(yaml, step, "translate", offset, error);
   if (result == ABBE_OK) abbe_transform_translate(offset, out);
   return result;
 }
@@ -98,8 +96,7 @@ static abbe_result read_transform(abbe_object_reading *r, abbe_error *error) {
                           "'transform' wants a list of steps, such as - translate: [0, 0, 1]");
   for (size_t i = 0; i < abbe_yaml_count(r->yaml, list); i++) {
     double step[16];
-    const abbe_result result = read_step(r->yaml, abbe_yaml_item(r->yaml, list, i), step, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(read_step(r->yaml, abbe_yaml_item(r->yaml, list, i), step, error));
     abbe_transform_multiply(step, r->matrix, r->matrix);
   }
   return ABBE_OK;
@@ -115,10 +112,9 @@ static abbe_result read_reflectance(const abbe_object_reading *r, abbe_object *o
     return abbe_reflectance_file_read(r->yaml, node, r->folder, out, error);
   if (abbe_yaml_is_sequence(r->yaml, node))
     return abbe_yaml_get_numbers(r->yaml, r->node, "reflectance", 3, 0, 1, out->reflectance, error);
-  const abbe_result result =
-      abbe_yaml_get_number(r->yaml, r->node, "reflectance", 0, 1, out->reflectance, error);
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, r->node, "reflectance", 0, 1, out->reflectance, error));
   out->reflectance[1] = out->reflectance[2] = out->reflectance[0];
-  return result;
+  return ABBE_OK;
 }
 
 /* sRGB's transfer function, from encoded to linear [IEC61966]. */
@@ -150,20 +146,19 @@ static abbe_result read_texture(const abbe_object_reading *r, abbe_yaml_node nod
 static abbe_result read_receiver(const abbe_object_reading *r, abbe_object *out,
                                  abbe_error *error) {
   out->texture_repeat[0] = out->texture_repeat[1] = 1.0;
-  abbe_result result = read_reflectance(r, out, error);
+  ABBE_TRY(read_reflectance(r, out, error));
   const abbe_yaml_node texture = abbe_yaml_get(r->yaml, r->node, "texture");
   const abbe_yaml_node repeat = abbe_yaml_get(r->yaml, r->node, "repeat");
-  if (result == ABBE_OK && repeat.id && !texture.id)
-    result = abbe_yaml_fail(r->yaml, repeat, error, "'repeat' says nothing without a 'texture'");
-  if (result == ABBE_OK)
-    result =
-        abbe_yaml_get_numbers(r->yaml, r->node, "repeat", 2, 1e-6, 1e6, out->texture_repeat, error);
-  if (result == ABBE_OK && texture.id && out->spectrum != NULL)
-    result = abbe_yaml_fail(r->yaml, texture, error,
+  if (repeat.id && !texture.id)
+    ABBE_TRY(abbe_yaml_fail(r->yaml, repeat, error, "'repeat' says nothing without a 'texture'"));
+  ABBE_TRY(
+      abbe_yaml_get_numbers(r->yaml, r->node, "repeat", 2, 1e-6, 1e6, out->texture_repeat, error));
+  if (texture.id && out->spectrum != NULL)
+    ABBE_TRY(abbe_yaml_fail(r->yaml, texture, error,
                             "a texture multiplies a reflectance in red, green and blue; leave it "
-                            "out, or the spectrum");
-  if (result == ABBE_OK && texture.id) result = read_texture(r, texture, out, error);
-  return result;
+                            "out, or the spectrum"));
+  if (texture.id) ABBE_TRY(read_texture(r, texture, out, error));
+  return ABBE_OK;
 }
 
 /* Why nothing is seen through it, and what to do. */
@@ -335,13 +330,13 @@ static abbe_result read_substance(const abbe_object_reading *r, const abbe_mater
         "reflects), or a 'reflectance' or 'texture' (it receives light); this one "
         "has %s",
         found == 0 ? "none" : "more than one");
-  abbe_result result = material.id ? read_refractor(r, material, table, out, error)
-                       : mirror.id ? read_mirror(r, mirror, table, out, error)
-                                   : read_receiver(r, out, error);
-  if (result == ABBE_OK) result = abbe_object_read_axes(r, out, error);
-  if (result == ABBE_OK) result = read_brushing(r, out, error);
-  if (result == ABBE_OK) result = abbe_object_read_coating(r, table, out, error);
-  return result == ABBE_OK ? read_medium(r, out, error) : result;
+  ABBE_TRY(material.id ? read_refractor(r, material, table, out, error)
+           : mirror.id ? read_mirror(r, mirror, table, out, error)
+                       : read_receiver(r, out, error));
+  ABBE_TRY(abbe_object_read_axes(r, out, error));
+  ABBE_TRY(read_brushing(r, out, error));
+  ABBE_TRY(abbe_object_read_coating(r, table, out, error));
+  return read_medium(r, out, error);
 }
 
 /* --- the surface in the world --- */
@@ -403,17 +398,16 @@ static abbe_result refuse_elsewhere(const abbe_object_reading *r, const char *ke
 
 static abbe_result read_solid(const abbe_object_reading *r, abbe_object_surface *s,
                               abbe_error *error) {
-  abbe_result result = refuse_elsewhere(r, "repair", error);
-  if (result == ABBE_OK) result = refuse_elsewhere(r, "flatten", error);
-  if (result == ABBE_OK) result = abbe_yaml_get_bool(r->yaml, r->node, "repair", &s->repair, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(r->yaml, r->node, "flatten", 0, ABBE_CONVEX_MOST_FLATTENED,
-                                  &s->flatten, error);
-  if (result == ABBE_OK && s->flatten > 0 && r->normals == ABBE_NORMALS_SMOOTH)
-    result = abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, r->node, "flatten"), error,
+  ABBE_TRY(refuse_elsewhere(r, "repair", error));
+  ABBE_TRY(refuse_elsewhere(r, "flatten", error));
+  ABBE_TRY(abbe_yaml_get_bool(r->yaml, r->node, "repair", &s->repair, error));
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, r->node, "flatten", 0, ABBE_CONVEX_MOST_FLATTENED,
+                                &s->flatten, error));
+  if (s->flatten > 0 && r->normals == ABBE_NORMALS_SMOOTH)
+    ABBE_TRY(abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, r->node, "flatten"), error,
                             "'flatten' makes a cut solid; leave out 'smooth: true' and "
-                            "'subdivide'");
-  return result;
+                            "'subdivide'"));
+  return ABBE_OK;
 }
 
 static abbe_result place(const abbe_object_reading *r, const abbe_object_surface *surface,

@@ -19,10 +19,8 @@
 static abbe_result need_water_length(abbe_yaml *yaml, abbe_yaml_node node, const char *key,
                                      double *out, abbe_error *error) {
   abbe_yaml_node ignored;
-  const abbe_result result = abbe_yaml_require(yaml, node, key, &ignored, error);
-  return result == ABBE_OK
-             ? abbe_yaml_get_length(yaml, node, key, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out, error)
-             : result;
+  ABBE_TRY(abbe_yaml_require(yaml, node, key, &ignored, error));
+  return abbe_yaml_get_length(yaml, node, key, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out, error);
 }
 
 /* The list under key, of at most `most` mappings, with capacity for them in *room, zeroed. */
@@ -45,31 +43,26 @@ static abbe_result list_of(const abbe_object_reading *r, const char *key, size_t
 static abbe_result read_wave(abbe_yaml *yaml, abbe_yaml_node node, abbe_water_wave *out,
                              abbe_error *error) {
   double direction = 0, phase = 0;
-  abbe_result result = need_water_length(yaml, node, "amplitude", &out->amplitude, error);
-  if (result == ABBE_OK)
-    result = need_water_length(yaml, node, "wavelength", &out->wavelength, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, node, "direction", -3600, 3600, &direction, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, node, "phase", -3600, 3600, &phase, error);
+  ABBE_TRY(need_water_length(yaml, node, "amplitude", &out->amplitude, error));
+  ABBE_TRY(need_water_length(yaml, node, "wavelength", &out->wavelength, error));
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "direction", -3600, 3600, &direction, error));
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "phase", -3600, 3600, &phase, error));
   out->direction_rad = direction * ABBE_DEGREE;
   out->phase_rad = phase * ABBE_DEGREE;
-  return result == ABBE_OK ? abbe_yaml_check_keys(yaml, node, "a wave", error) : result;
+  return abbe_yaml_check_keys(yaml, node, "a wave", error);
 }
 
 static abbe_result read_drop(abbe_yaml *yaml, abbe_yaml_node node, abbe_water_drop *out,
                              abbe_error *error) {
   abbe_yaml_node ignored;
-  abbe_result result = abbe_yaml_require(yaml, node, "at", &ignored, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_yaml_get_lengths(yaml, node, "at", 2, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out->at, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, node, "time", -ABBE_SCENE_FAR, ABBE_SCENE_FAR, &out->time,
-                                  error);
-  if (result == ABBE_OK) result = need_water_length(yaml, node, "depth", &out->depth, error);
-  if (result == ABBE_OK) result = need_water_length(yaml, node, "radius", &out->radius, error);
-  return result == ABBE_OK ? abbe_yaml_check_keys(yaml, node, "a drop", error) : result;
+  ABBE_TRY(abbe_yaml_require(yaml, node, "at", &ignored, error));
+  ABBE_TRY(
+      abbe_yaml_get_lengths(yaml, node, "at", 2, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out->at, error));
+  ABBE_TRY(
+      abbe_yaml_get_number(yaml, node, "time", -ABBE_SCENE_FAR, ABBE_SCENE_FAR, &out->time, error));
+  ABBE_TRY(need_water_length(yaml, node, "depth", &out->depth, error));
+  ABBE_TRY(need_water_length(yaml, node, "radius", &out->radius, error));
+  return abbe_yaml_check_keys(yaml, node, "a drop", error);
 }
 
 static abbe_result read_rain(const abbe_object_reading *r, abbe_water_rain *out,
@@ -80,19 +73,17 @@ static abbe_result read_rain(const abbe_object_reading *r, abbe_water_rain *out,
   if (!abbe_yaml_is_mapping(r->yaml, node))
     return abbe_yaml_fail(r->yaml, node, error, "'rain' must be a mapping (key: value)");
   abbe_yaml_node ignored;
-  abbe_result result = abbe_yaml_require(r->yaml, node, "every", &ignored, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(r->yaml, node, "every", -ABBE_SCENE_FAR, ABBE_SCENE_FAR,
-                                  &out->every, error);
-  if (result == ABBE_OK && !(out->every > 0))
-    result = abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, node, "every"), error,
-                            "'every' is the time between two drops, in seconds, above 0");
-  if (result == ABBE_OK) result = need_water_length(r->yaml, node, "depth", &out->depth, error);
-  if (result == ABBE_OK) result = need_water_length(r->yaml, node, "radius", &out->radius, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_count(r->yaml, node, "seed", 0, UINT32_MAX, &seed, error);
+  ABBE_TRY(abbe_yaml_require(r->yaml, node, "every", &ignored, error));
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, node, "every", -ABBE_SCENE_FAR, ABBE_SCENE_FAR,
+                                &out->every, error));
+  if (!(out->every > 0))
+    ABBE_TRY(abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, node, "every"), error,
+                            "'every' is the time between two drops, in seconds, above 0"));
+  ABBE_TRY(need_water_length(r->yaml, node, "depth", &out->depth, error));
+  ABBE_TRY(need_water_length(r->yaml, node, "radius", &out->radius, error));
+  ABBE_TRY(abbe_yaml_get_count(r->yaml, node, "seed", 0, UINT32_MAX, &seed, error));
   out->seed = (uint32_t)seed;
-  return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, node, "'rain'", error) : result;
+  return abbe_yaml_check_keys(r->yaml, node, "'rain'", error);
 }
 
 /* One number for both sides, or two. */
@@ -150,10 +141,8 @@ static const char *const shape_names[] = {"sphere",    "ring",  "gem", "brillian
 static abbe_result need_length(const abbe_object_reading *r, const char *key, double *out,
                                abbe_error *error) {
   abbe_yaml_node ignored;
-  const abbe_result result = abbe_yaml_require(r->yaml, r->node, key, &ignored, error);
-  return result == ABBE_OK ? abbe_yaml_get_length(r->yaml, r->node, key, -ABBE_SCENE_FAR,
-                                                  ABBE_SCENE_FAR, out, error)
-                           : result;
+  ABBE_TRY(abbe_yaml_require(r->yaml, r->node, key, &ignored, error));
+  return abbe_yaml_get_length(r->yaml, r->node, key, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out, error);
 }
 
 static abbe_result read_count(const abbe_object_reading *r, const char *key, size_t min, size_t max,
@@ -165,19 +154,19 @@ static abbe_result read_count(const abbe_object_reading *r, const char *key, siz
 
 static abbe_result read_sphere(abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
   size_t levels = 4;
-  abbe_result result = need_length(r, "radius", &r->radius, error);
-  if (result == ABBE_OK) result = read_count(r, "levels", 0, 9, &levels, error);
-  return result == ABBE_OK ? abbe_shape_sphere(r->radius, levels, out, error) : result;
+  ABBE_TRY(need_length(r, "radius", &r->radius, error));
+  ABBE_TRY(read_count(r, "levels", 0, 9, &levels, error));
+  return abbe_shape_sphere(r->radius, levels, out, error);
 }
 
 static abbe_result read_ring(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
   double major = 0.0, minor = 0.0;
   size_t around = 256, across = 128;
-  abbe_result result = need_length(r, "major", &major, error);
-  if (result == ABBE_OK) result = need_length(r, "minor", &minor, error);
-  if (result == ABBE_OK) result = read_count(r, "around", 3, 4096, &around, error);
-  if (result == ABBE_OK) result = read_count(r, "across", 3, 4096, &across, error);
-  return result == ABBE_OK ? abbe_shape_ring(major, minor, around, across, out, error) : result;
+  ABBE_TRY(need_length(r, "major", &major, error));
+  ABBE_TRY(need_length(r, "minor", &minor, error));
+  ABBE_TRY(read_count(r, "around", 3, 4096, &around, error));
+  ABBE_TRY(read_count(r, "across", 3, 4096, &across, error));
+  return abbe_shape_ring(major, minor, around, across, out, error);
 }
 
 static abbe_result read_knot(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
@@ -190,26 +179,22 @@ static abbe_result read_knot(const abbe_object_reading *r, abbe_mesh *out, abbe_
                 {"spines", ABBE_KNOT_MAX_SPINES, &knot.spines},
                 {"along", ABBE_KNOT_MAX_SEGMENTS, &knot.along},
                 {"across", ABBE_KNOT_MAX_SEGMENTS, &knot.across}};
-  abbe_result result = need_length(r, "major", &knot.major, error);
-  if (result == ABBE_OK) result = need_length(r, "minor", &knot.minor, error);
-  if (result == ABBE_OK) result = need_length(r, "radius", &knot.radius, error);
-  for (size_t i = 0; i < sizeof counts / sizeof *counts && result == ABBE_OK; i++)
-    result = read_count(r, counts[i].key, 1, counts[i].most, counts[i].count, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(r->yaml, r->node, "spine", 0, 2, &knot.spine, error);
-  return result == ABBE_OK ? abbe_knot_make(&knot, out, error) : result;
+  ABBE_TRY(need_length(r, "major", &knot.major, error));
+  ABBE_TRY(need_length(r, "minor", &knot.minor, error));
+  ABBE_TRY(need_length(r, "radius", &knot.radius, error));
+  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+    ABBE_TRY(read_count(r, counts[i].key, 1, counts[i].most, counts[i].count, error));
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, r->node, "spine", 0, 2, &knot.spine, error));
+  return abbe_knot_make(&knot, out, error);
 }
 
 static abbe_result read_gem(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
   static const char *const keys[] = {"girdle", "table", "crown", "pavilion"};
   double length[4] = {0};
   size_t sides = 6;
-  abbe_result result = read_count(r, "sides", 3, 1024, &sides, error);
-  for (int i = 0; i < 4 && result == ABBE_OK; i++)
-    result = need_length(r, keys[i], &length[i], error);
-  return result == ABBE_OK
-             ? abbe_shape_gem(sides, length[0], length[1], length[2], length[3], out, error)
-             : result;
+  ABBE_TRY(read_count(r, "sides", 3, 1024, &sides, error));
+  for (int i = 0; i < 4; i++) ABBE_TRY(need_length(r, keys[i], &length[i], error));
+  return abbe_shape_gem(sides, length[0], length[1], length[2], length[3], out, error);
 }
 
 /* Angles in degrees, the rest in shares of the diameter or of the distance; 0 stays the default. */
@@ -221,34 +206,33 @@ static abbe_result read_brilliant(const abbe_object_reading *r, abbe_mesh *out, 
     double *value;
   } keys[] = {{"table", &cut.table},   {"star", &cut.star}, {"lower", &cut.lower},
               {"girdle", &cut.girdle}, {"crown", &crown},   {"pavilion", &pavilion}};
-  abbe_result result = need_length(r, "diameter", &cut.diameter, error);
-  for (size_t i = 0; i < sizeof keys / sizeof *keys && result == ABBE_OK; i++)
-    result = abbe_yaml_get_number(r->yaml, r->node, keys[i].key, 1e-6, 90, keys[i].value, error);
+  ABBE_TRY(need_length(r, "diameter", &cut.diameter, error));
+  for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
+    ABBE_TRY(abbe_yaml_get_number(r->yaml, r->node, keys[i].key, 1e-6, 90, keys[i].value, error));
   cut.crown_rad = crown * ABBE_DEGREE;
   cut.pavilion_rad = pavilion * ABBE_DEGREE;
-  return result == ABBE_OK ? abbe_brilliant_make(&cut, out, error) : result;
+  return abbe_brilliant_make(&cut, out, error);
 }
 
 static abbe_result read_prism(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
   double apex = 60.0, side = 0.0, length = 0.0;
-  abbe_result result = abbe_yaml_get_number(r->yaml, r->node, "apex", -360, 360, &apex, error);
-  if (result == ABBE_OK) result = need_length(r, "side", &side, error);
-  if (result == ABBE_OK) result = need_length(r, "length", &length, error);
-  return result == ABBE_OK ? abbe_shape_prism(apex * ABBE_DEGREE, side, length, out, error)
-                           : result;
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, r->node, "apex", -360, 360, &apex, error));
+  ABBE_TRY(need_length(r, "side", &side, error));
+  ABBE_TRY(need_length(r, "length", &length, error));
+  return abbe_shape_prism(apex * ABBE_DEGREE, side, length, out, error);
 }
 
 static abbe_result read_box(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
   double size[3] = {0};
-  const abbe_result result = abbe_scene_value_point(r->yaml, r->node, "size", size, error);
-  return result == ABBE_OK ? abbe_shape_box(size, out, error) : result;
+  ABBE_TRY(abbe_scene_value_point(r->yaml, r->node, "size", size, error));
+  return abbe_shape_box(size, out, error);
 }
 
 static abbe_result read_rectangle(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
   double width = 0.0, height = 0.0;
-  abbe_result result = need_length(r, "width", &width, error);
-  if (result == ABBE_OK) result = need_length(r, "height", &height, error);
-  return result == ABBE_OK ? abbe_shape_rectangle(width, height, out, error) : result;
+  ABBE_TRY(need_length(r, "width", &width, error));
+  ABBE_TRY(need_length(r, "height", &height, error));
+  return abbe_shape_rectangle(width, height, out, error);
 }
 
 /* The list of [r, z] pairs under "profile". */
@@ -397,9 +381,7 @@ static abbe_result read_own_material(const abbe_object_reading *r, abbe_object *
   out->own_material = calloc(1, sizeof *out->own_material);
   if (out->own_material == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a material");
-  const abbe_result result =
-      abbe_gltf_material_load(out->mesh_path, *part, out->own_material, &name, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gltf_material_load(out->mesh_path, *part, out->own_material, &name, error));
   free(*part);
   *part = name;
   return ABBE_OK;

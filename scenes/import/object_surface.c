@@ -384,9 +384,8 @@ static abbe_result load_file(abbe_yaml *yaml, abbe_yaml_node node, const char *f
 static abbe_result find_colour(abbe_object *out, abbe_error *error) {
   const abbe_illuminant d65 = {0};
   abbe_reflected_light *light = NULL;
-  const abbe_result result = abbe_reflected_light_make(&d65, ABBE_WAVELENGTH_MIN_NM,
-                                                       ABBE_WAVELENGTH_MAX_NM, &light, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_reflected_light_make(&d65, ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM, &light,
+                                     error));
   double xyz[3][3], matrix[9];
   abbe_reflected_light_xyz(light, out->spectrum, xyz);
   abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, matrix);

@@ -114,19 +114,15 @@ static abbe_result read_table(abbe_yaml *yaml, abbe_yaml_node root, const char *
 static abbe_result read_brightness(abbe_yaml *yaml, abbe_yaml_node root, abbe_scene *out,
                                    abbe_error *error) {
   const double most = ABBE_SCENE_BRIGHTEST;
-  const abbe_result result =
-      abbe_yaml_get_number(yaml, root, "ambient", 0, most, &out->ambient, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_yaml_get_number(yaml, root, "ambient", 0, most, &out->ambient, error));
   return abbe_yaml_get_number(yaml, root, "background", 0, most, &out->background, error);
 }
 
 static abbe_result read_conditions(abbe_yaml *yaml, abbe_yaml_node root, abbe_conditions *out,
                                    abbe_error *error) {
   *out = (abbe_conditions){NAN, NAN};
-  const abbe_result result =
-      abbe_yaml_get_number(yaml, root, "temperature", ABBE_CONDITIONS_LEAST_C,
-                           ABBE_CONDITIONS_MOST_C, &out->temperature_c, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_yaml_get_number(yaml, root, "temperature", ABBE_CONDITIONS_LEAST_C,
+                                ABBE_CONDITIONS_MOST_C, &out->temperature_c, error));
   return abbe_yaml_get_number(yaml, root, "pressure", 0, ABBE_CONDITIONS_MOST_ATM,
                               &out->pressure_atm, error);
 }
@@ -208,12 +204,11 @@ static abbe_result read_document(abbe_yaml *yaml, const char *path,
 static abbe_result change_text(const char *text, size_t size, const char *name,
                                const abbe_scene_options *options, abbe_yaml_edit *out,
                                abbe_error *error) {
-  abbe_result result = abbe_yaml_edit_make(text, size, name, out, error);
-  if (result == ABBE_OK && options && options->stone)
-    result = abbe_scene_change_material(out, options->stone, error);
-  for (size_t i = 0; options && i < options->set_count && result == ABBE_OK; i++)
-    result = abbe_scene_change_set(out, options->set[i], error);
-  return result;
+  ABBE_TRY(abbe_yaml_edit_make(text, size, name, out, error));
+  if (options && options->stone) ABBE_TRY(abbe_scene_change_material(out, options->stone, error));
+  for (size_t i = 0; options && i < options->set_count; i++)
+    ABBE_TRY(abbe_scene_change_set(out, options->set[i], error));
+  return ABBE_OK;
 }
 
 /* The same as a document, with the values of its time in the place of keyframes where asked for. */
@@ -279,8 +274,8 @@ abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options,
                             abbe_error *error) {
   memset(out, 0, sizeof *out);
   abbe_yaml *yaml = NULL;
-  const abbe_result result = load_document(path, options, &yaml, error);
-  return result == ABBE_OK ? read_document(yaml, path, options, out, error) : result;
+  ABBE_TRY(load_document(path, options, &yaml, error));
+  return read_document(yaml, path, options, out, error);
 }
 
 /* A value set anew may take another line, and what comes after it moves. */
@@ -339,8 +334,8 @@ abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
                              abbe_error *error) {
   memset(out, 0, sizeof *out);
   abbe_yaml *yaml = NULL;
-  const abbe_result result = parse_document(text, size, name, options, &yaml, error);
-  return result == ABBE_OK ? read_document(yaml, name, options, out, error) : result;
+  ABBE_TRY(parse_document(text, size, name, options, &yaml, error));
+  return read_document(yaml, name, options, out, error);
 }
 
 abbe_result abbe_scene_text(const char *path, const abbe_scene_options *options, char **out,

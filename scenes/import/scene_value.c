@@ -27,10 +27,8 @@ abbe_result abbe_scene_value_locate(const abbe_yaml *yaml, abbe_yaml_node node, 
 abbe_result abbe_scene_value_point(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                    double out[3], abbe_error *error) {
   abbe_yaml_node ignored;
-  const abbe_result result = abbe_yaml_require(yaml, mapping, key, &ignored, error);
-  return result == ABBE_OK ? abbe_yaml_get_lengths(yaml, mapping, key, 3, -ABBE_SCENE_FAR,
-                                                   ABBE_SCENE_FAR, out, error)
-                           : result;
+  ABBE_TRY(abbe_yaml_require(yaml, mapping, key, &ignored, error));
+  return abbe_yaml_get_lengths(yaml, mapping, key, 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out, error);
 }
 
 abbe_result abbe_scene_value_list(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,

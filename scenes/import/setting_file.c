@@ -25,22 +25,16 @@ static abbe_result read_shape(abbe_yaml *yaml, abbe_yaml_node node, abbe_setting
                               abbe_error *error) {
   abbe_yaml_node ignored;
   int kind = 0;
-  abbe_result result = abbe_yaml_require(yaml, node, "kind", &ignored, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_choice(yaml, node, "kind", kind_names, &kind, error);
+  ABBE_TRY(abbe_yaml_require(yaml, node, "kind", &ignored, error));
+  ABBE_TRY(abbe_yaml_get_choice(yaml, node, "kind", kind_names, &kind, error));
   out->kind = (abbe_setting_kind)kind;
   const bool counted = out->kind == ABBE_SETTING_PRONGS || out->kind == ABBE_SETTING_PAVE;
-  if (result == ABBE_OK) result = refuse(yaml, node, "count", counted, kind_names[kind], error);
-  if (result == ABBE_OK)
-    result = refuse(yaml, node, "radius", out->kind == ABBE_SETTING_BAND, kind_names[kind], error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_count(yaml, node, "count", ABBE_SETTING_LEAST, ABBE_SETTING_MOST,
-                                 &out->count, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_length(yaml, node, "thick", 0, ABBE_SCENE_FAR, &out->thick, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_length(yaml, node, "radius", 0, ABBE_SCENE_FAR, &out->radius, error);
-  return result;
+  ABBE_TRY(refuse(yaml, node, "count", counted, kind_names[kind], error));
+  ABBE_TRY(refuse(yaml, node, "radius", out->kind == ABBE_SETTING_BAND, kind_names[kind], error));
+  ABBE_TRY(abbe_yaml_get_count(yaml, node, "count", ABBE_SETTING_LEAST, ABBE_SETTING_MOST,
+                               &out->count, error));
+  ABBE_TRY(abbe_yaml_get_length(yaml, node, "thick", 0, ABBE_SCENE_FAR, &out->thick, error));
+  return abbe_yaml_get_length(yaml, node, "radius", 0, ABBE_SCENE_FAR, &out->radius, error);
 }
 
 static abbe_result read_metal(abbe_yaml *yaml, abbe_yaml_node node,
@@ -101,11 +95,10 @@ abbe_result abbe_setting_read(const abbe_object_reading *r, const abbe_material_
                           "%zu settings: a stone has up to %d, and a scene %d objects", most,
                           ABBE_SETTINGS_MOST, ABBE_SCENE_MAX_OBJECTS);
   const double unit = most > 0 ? abbe_object_unit(surface, &stone->mesh) : 0;
-  abbe_result result = ABBE_OK;
-  for (; *count < most && result == ABBE_OK; ++*count)
-    result = read_one(r, list ? abbe_yaml_item(r->yaml, node, *count) : node, table, stone, unit,
-                      &out[*count], error);
-  return result;
+  for (; *count < most; ++*count)
+    ABBE_TRY(read_one(r, list ? abbe_yaml_item(r->yaml, node, *count) : node, table, stone, unit,
+                      &out[*count], error));
+  return ABBE_OK;
 }
 
 abbe_result abbe_setting_place(const abbe_object_surface *surface, abbe_result before,

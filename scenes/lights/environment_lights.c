@@ -269,9 +269,8 @@ abbe_result abbe_environment_lights_leave(const abbe_environment *environment, s
   const abbe_radiance_map *map = &environment->map;
   search s;
   *out = (abbe_radiance_map){0};
-  abbe_result result = look_for_lamps(environment, count, &s, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_radiance_map_make(map->width, out, error);
+  ABBE_TRY(look_for_lamps(environment, count, &s, error));
+  abbe_result result = abbe_radiance_map_make(map->width, out, error);
   for (size_t i = 0; result == ABBE_OK && i < map->width * map->height; i++) {
     const size_t x = i % map->width, y = i / map->width;
     const cut *c = &s.cuts[y * ROWS / map->height * COLUMNS + x * COLUMNS / map->width];
@@ -308,9 +307,8 @@ static abbe_result find_all(const abbe_environment *environment,
                             const abbe_environment_lights_desc *desc, size_t count, abbe_scene *out,
                             abbe_error *error) {
   search s;
-  abbe_result result = look_for_lamps(environment, count, &s, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_watch_check(error);
+  ABBE_TRY(look_for_lamps(environment, count, &s, error));
+  abbe_result result = abbe_watch_check(error);
   if (result == ABBE_OK) result = add_all(&s, desc, out, error);
   drop_search(&s);
   return result;

@@ -299,9 +299,7 @@ static void move_vertices(const abbe_topology *t, uint32_t *parent, double (*mid
 }
 
 static abbe_result copy_mesh(const abbe_mesh *mesh, abbe_mesh *out, abbe_error *error) {
-  const abbe_result result =
-      abbe_mesh_make(mesh->vertex_count, mesh->face_count, mesh->uv != NULL, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_mesh_make(mesh->vertex_count, mesh->face_count, mesh->uv != NULL, out, error));
   memcpy(out->position, mesh->position, mesh->vertex_count * sizeof *out->position);
   memcpy(out->normal, mesh->normal, mesh->vertex_count * sizeof *out->normal);
   if (mesh->uv != NULL) memcpy(out->uv, mesh->uv, mesh->vertex_count * sizeof *out->uv);

@@ -21,8 +21,7 @@ typedef struct fixing {
 
 /* The mesh with one vertex a point, which later steps may change. */
 static abbe_result welded(const abbe_topology *t, abbe_mesh *out, abbe_error *error) {
-  abbe_result result = abbe_mesh_make(t->point_count, t->face_count, false, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_mesh_make(t->point_count, t->face_count, false, out, error));
   memcpy(out->position, t->position, t->point_count * sizeof *out->position);
   memcpy(out->face, t->face, t->face_count * sizeof *out->face);
   return ABBE_OK;
@@ -71,8 +70,7 @@ static bool flip_sliver(abbe_mesh *mesh, const abbe_topology *t, uint32_t f, int
 static abbe_result flip_slivers(abbe_mesh *mesh, fixing *done, abbe_error *error) {
   for (int pass = 0; pass < 8; pass++) {
     abbe_topology t;
-    const abbe_result result = abbe_topology_make(mesh, &t, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_topology_make(mesh, &t, error));
     bool *touched = calloc(mesh->face_count + 1, sizeof *touched);
     if (!touched) {
       abbe_topology_free(&t);
@@ -132,8 +130,7 @@ static size_t walk(const abbe_topology *t, uint32_t first, unsigned char *side, 
 
 static abbe_result make_consistent(abbe_mesh *mesh, fixing *done, abbe_error *error) {
   abbe_topology t;
-  const abbe_result result = abbe_topology_make(mesh, &t, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_topology_make(mesh, &t, error));
   unsigned char *side = calloc(mesh->face_count + 1, 1);
   uint32_t *queue = malloc((mesh->face_count + 1) * sizeof *queue);
   if (side && queue) {
@@ -332,11 +329,11 @@ static abbe_result carry_normals(const abbe_mesh *from, const abbe_topology *t, 
 static abbe_result fixed_normals(const abbe_mesh *from, const abbe_topology *t, abbe_mesh *mesh,
                                  abbe_error *error) {
   abbe_topology own;
-  abbe_result result = abbe_topology_make(mesh, &own, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_topology_make(mesh, &own, error));
   double(*corner)[3] = malloc((3 * mesh->face_count + 1) * sizeof *corner);
-  result = corner ? abbe_mesh_crease_normals(mesh, &own, corner, error)
-                  : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the normals of a mesh");
+  abbe_result result =
+      corner ? abbe_mesh_crease_normals(mesh, &own, corner, error)
+             : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the normals of a mesh");
   if (result == ABBE_OK && from->given_normals)
     result = carry_normals(from, t, mesh, corner, error);
   mesh->given_normals = from->given_normals;
@@ -378,9 +375,8 @@ abbe_result abbe_mesh_fix(abbe_mesh *mesh, abbe_mesh_normals normals, bool repai
   abbe_mesh_report report;
   abbe_mesh work = {0}, joined = {0};
   fixing done = {0};
-  abbe_result result = abbe_topology_make(mesh, &t, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_mesh_check_known(mesh, &t, &report, error);
+  ABBE_TRY(abbe_topology_make(mesh, &t, error));
+  abbe_result result = abbe_mesh_check_known(mesh, &t, &report, error);
   if (result == ABBE_OK && report.open_edges > 0) {
     result = join(mesh, &joined, &t, &done, error);
     if (result == ABBE_OK && done.joined > 0)

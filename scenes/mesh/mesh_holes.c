@@ -353,9 +353,8 @@ abbe_result abbe_mesh_close_holes(abbe_mesh *mesh, bool any, size_t *count, doub
   abbe_topology t;
   rims r = {0};
   closing how = {.any = any};
-  abbe_result result = abbe_topology_make(mesh, &t, error);
-  if (result != ABBE_OK) return result;
-  result = find_rims(&t, &r, error);
+  ABBE_TRY(abbe_topology_make(mesh, &t, error));
+  abbe_result result = find_rims(&t, &r, error);
   if (result == ABBE_OK && r.count > 0) {
     result = name_vertices(mesh, &t, &r, &how.known, error);
     how.diagonal = abbe_mesh_diagonal(mesh, NULL);

@@ -13,8 +13,7 @@
 
 static abbe_result smooth_normals(abbe_mesh *mesh, abbe_error *error) {
   abbe_topology t;
-  abbe_result result = abbe_topology_make(mesh, &t, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_topology_make(mesh, &t, error));
   double(*sum)[3] = calloc(t.point_count + 1, sizeof *sum);
   if (!sum) {
     abbe_topology_free(&t);
@@ -39,9 +38,7 @@ static abbe_result smooth_normals(abbe_mesh *mesh, abbe_error *error) {
 
 static abbe_result face_normals(abbe_mesh *mesh, abbe_error *error) {
   abbe_mesh split;
-  abbe_result result =
-      abbe_mesh_make(3 * mesh->face_count, mesh->face_count, mesh->uv != NULL, &split, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_mesh_make(3 * mesh->face_count, mesh->face_count, mesh->uv != NULL, &split, error));
   for (size_t f = 0; f < mesh->face_count; f++) {
     const uint32_t *corner = mesh->face[f];
     double n[3];
@@ -233,11 +230,11 @@ abbe_result abbe_mesh_take_normals(abbe_mesh *mesh, const uint32_t *point,
 
 static abbe_result angle_normals(abbe_mesh *mesh, abbe_error *error) {
   abbe_topology t;
-  abbe_result result = abbe_topology_make(mesh, &t, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_topology_make(mesh, &t, error));
   double(*corner)[3] = malloc((3 * mesh->face_count + 1) * sizeof *corner);
-  result = corner ? abbe_mesh_crease_normals(mesh, &t, corner, error)
-                  : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the normals of a mesh");
+  abbe_result result =
+      corner ? abbe_mesh_crease_normals(mesh, &t, corner, error)
+             : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the normals of a mesh");
   if (result == ABBE_OK)
     result = abbe_mesh_take_normals(mesh, t.point, (const double(*)[3])corner, error);
   free(corner);

@@ -107,11 +107,10 @@ static abbe_result subdivide_once(abbe_mesh *mesh, abbe_error *error) {
   abbe_topology t;
   rings r = {0};
   abbe_mesh fine = {0};
-  abbe_result result = abbe_topology_make(mesh, &t, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_topology_make(mesh, &t, error));
   size_t sound = 0;
   for (size_t f = 0; f < t.face_count; f++) sound += t.face_edge[f][0] != ABBE_TOPOLOGY_NONE;
-  result = abbe_mesh_make(t.point_count + t.edge_count, 4 * sound, false, &fine, error);
+  abbe_result result = abbe_mesh_make(t.point_count + t.edge_count, 4 * sound, false, &fine, error);
   if (result == ABBE_OK && !rings_make(&t, &r))
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory to subdivide a mesh");
   if (result == ABBE_OK) {
@@ -137,11 +136,9 @@ abbe_result abbe_mesh_subdivide(abbe_mesh *mesh, size_t levels, abbe_error *erro
                             levels, mesh->face_count, ABBE_MESH_MAX_FACES);
     faces *= 4;
   }
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < levels && result == ABBE_OK; i++) result = subdivide_once(mesh, error);
-  if (result == ABBE_OK && levels > 0)
-    result = abbe_mesh_compute_normals(mesh, ABBE_NORMALS_SMOOTH, error);
-  return result;
+  for (size_t i = 0; i < levels; i++) ABBE_TRY(subdivide_once(mesh, error));
+  if (levels > 0) ABBE_TRY(abbe_mesh_compute_normals(mesh, ABBE_NORMALS_SMOOTH, error));
+  return ABBE_OK;
 }
 
 /* A mesh whose shells cross, as several that do not. */
@@ -156,8 +153,7 @@ static abbe_result take_solid(const abbe_mesh *mesh, const abbe_topology *t, con
     for (int k = 0; k < 3; k++)
       if (number[mesh->face[f][k]] == UINT32_MAX) number[mesh->face[f][k]] = (uint32_t)vertices++;
   }
-  const abbe_result result = abbe_mesh_make(vertices, faces, mesh->uv != NULL, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_mesh_make(vertices, faces, mesh->uv != NULL, out, error));
   out->given_normals = mesh->given_normals;
   for (size_t v = 0; v < mesh->vertex_count; v++) {
     if (number[v] == UINT32_MAX) continue;

@@ -218,8 +218,7 @@ static bool look_for_nearest(void *user, size_t number) {
 static abbe_result share_out(abbe_surface_samples *s, abbe_error *error) {
   abbe_point_grid grid;
   const double cell = 2 * fmax(s->spacing, s->reach);
-  abbe_result result = abbe_point_grid_make(cell, s->count, &grid, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_point_grid_make(cell, s->count, &grid, error));
   for (size_t i = 0; i < s->count; i++) abbe_point_grid_add(&grid, s->sample[i].position, i);
   for (size_t i = 0; i < s->candidate_count; i++) {
     search w = {s, &s->candidate[i], INFINITY, 0};
@@ -383,9 +382,7 @@ abbe_result abbe_surface_curvature_fit(const abbe_surface_samples *samples,
                                        abbe_surface_curvature *out, abbe_error *error) {
   if (samples->count == 0) return ABBE_OK;
   abbe_point_grid grid;
-  abbe_result result =
-      abbe_point_grid_make(samples->spacing, samples->candidate_count, &grid, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_point_grid_make(samples->spacing, samples->candidate_count, &grid, error));
   for (size_t i = 0; i < samples->candidate_count; i++)
     abbe_point_grid_add(&grid, samples->candidate[i].position, i);
   for (size_t i = 0; i < samples->count; i++) fit(&grid, samples, i, &out[i]);

@@ -41,8 +41,7 @@ static abbe_result icosahedron(abbe_mesh *out, abbe_error *error) {
   const double vertex[12][3] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
                                 {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
                                 {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  const abbe_result result = abbe_mesh_make(12, 20, false, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_mesh_make(12, 20, false, out, error));
   memcpy(out->position, vertex, sizeof vertex);
   memcpy(out->face, face, sizeof face);
   return ABBE_OK;
@@ -52,9 +51,9 @@ static abbe_result icosahedron(abbe_mesh *out, abbe_error *error) {
 static abbe_result split_in_four(abbe_mesh *mesh, abbe_error *error) {
   abbe_topology t;
   abbe_mesh fine;
-  abbe_result result = abbe_topology_make(mesh, &t, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_mesh_make(t.point_count + t.edge_count, 4 * t.face_count, false, &fine, error);
+  ABBE_TRY(abbe_topology_make(mesh, &t, error));
+  abbe_result result =
+      abbe_mesh_make(t.point_count + t.edge_count, 4 * t.face_count, false, &fine, error);
   if (result == ABBE_OK) {
     memcpy(fine.position, t.position, t.point_count * sizeof *fine.position);
     for (size_t e = 0; e < t.edge_count; e++)
@@ -112,8 +111,7 @@ abbe_result abbe_shape_ring(double major, double minor, size_t around, size_t ac
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a ring of %zu by %zu segments is not possible: from 3 to 4096 each",
                           around, across);
-  abbe_result result = abbe_mesh_make(around * across, 2 * around * across, false, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_mesh_make(around * across, 2 * around * across, false, out, error));
   size_t face = 0;
   for (size_t i = 0; i < around; i++)
     for (size_t j = 0; j < across; j++) {
@@ -148,8 +146,7 @@ abbe_result abbe_shape_gem(size_t sides, double girdle_radius, double table_radi
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a gem's table (radius %g) must be smaller than its girdle (%g)",
                           table_radius, girdle_radius);
-  const abbe_result result = abbe_mesh_make(2 * sides + 2, 4 * sides, false, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_mesh_make(2 * sides + 2, 4 * sides, false, out, error));
   const size_t centre = 2 * sides, culet = centre + 1;
   set3(out->position[centre], 0.0, 0.0, crown_height);
   set3(out->position[culet], 0.0, 0.0, -pavilion_depth);
@@ -178,8 +175,7 @@ abbe_result abbe_shape_prism(double apex_rad, double side, double length, abbe_m
                           apex_rad * 180.0 / ABBE_PI);
   static const uint32_t face[8][3] = {{0, 1, 2}, {3, 5, 4}, {0, 4, 1}, {0, 3, 4},
                                       {1, 5, 2}, {1, 4, 5}, {2, 3, 0}, {2, 5, 3}};
-  const abbe_result result = abbe_mesh_make(6, 8, false, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_mesh_make(6, 8, false, out, error));
   const double height = side * cos(0.5 * apex_rad), half = side * sin(0.5 * apex_rad);
   for (size_t end = 0; end < 2; end++) {
     const double y = end ? 0.5 * length : -0.5 * length;
@@ -195,8 +191,7 @@ abbe_result abbe_shape_rectangle(double width, double height, abbe_mesh *out, ab
   memset(out, 0, sizeof *out);
   if (!is_length(width)) return refuse_length("rectangle", "width", width, error);
   if (!is_length(height)) return refuse_length("rectangle", "height", height, error);
-  const abbe_result result = abbe_mesh_make(4, 2, true, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_mesh_make(4, 2, true, out, error));
   for (size_t v = 0; v < 4; v++) {
     const double u = v == 1 || v == 2 ? 1.0 : 0.0, w = v >= 2 ? 1.0 : 0.0;
     set3(out->position[v], width * (u - 0.5), height * (w - 0.5), 0.0);
@@ -214,8 +209,7 @@ abbe_result abbe_shape_box(const double size[3], abbe_mesh *out, abbe_error *err
   memset(out, 0, sizeof *out);
   for (int k = 0; k < 3; k++)
     if (!is_length(size[k])) return refuse_length("box", "edge", size[k], error);
-  const abbe_result result = abbe_mesh_make(24, 12, true, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_mesh_make(24, 12, true, out, error));
   size_t face = 0;
   for (size_t side = 0; side < 6; side++) {
     /* the axes u, v, n of a side are a right-handed turn of x, y, z */
@@ -329,9 +323,8 @@ abbe_result abbe_shape_lathe(const double (*profile)[2], size_t count, size_t ar
   if (result != ABBE_OK) return result;
   const size_t segments = count - 1;
   const size_t points = (profile[0][0] == 0.0 ? 1u : 0u) + (profile[segments][0] == 0.0 ? 1u : 0u);
-  result =
-      abbe_mesh_make(2 * segments * around, (2 * segments - points) * around, false, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(
+      abbe_mesh_make(2 * segments * around, (2 * segments - points) * around, false, out, error));
   size_t face = 0;
   for (size_t i = 0; i < segments; i++) lathe_segment(profile, count, i, around, out, &face);
   return ABBE_OK;

@@ -187,12 +187,12 @@ static abbe_result resolve(abbe_brilliant *cut, abbe_error *error) {
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a brilliant's diameter is %g; it must be a finite length above zero",
                           cut->diameter);
-  abbe_result result = check_share("table", cut->table, error);
-  if (result == ABBE_OK) result = check_share("star", cut->star, error);
-  if (result == ABBE_OK) result = check_share("lower half", cut->lower, error);
-  if (result == ABBE_OK) result = check_share("girdle", cut->girdle, error);
-  if (result == ABBE_OK) result = check_angle("crown", cut->crown_rad, error);
-  return result == ABBE_OK ? check_angle("pavilion", cut->pavilion_rad, error) : result;
+  ABBE_TRY(check_share("table", cut->table, error));
+  ABBE_TRY(check_share("star", cut->star, error));
+  ABBE_TRY(check_share("lower half", cut->lower, error));
+  ABBE_TRY(check_share("girdle", cut->girdle, error));
+  ABBE_TRY(check_angle("crown", cut->crown_rad, error));
+  return check_angle("pavilion", cut->pavilion_rad, error);
 }
 
 /* Steps of half a main's angle. */

@@ -122,10 +122,9 @@ static abbe_result add_drop(const abbe_water_drop *drop, surface *s, abbe_error 
                           "the rings of more than %u drops are on the water at one time; let fewer "
                           "fall, or more seldom",
                           ABBE_WATER_MOST_DROPS);
-  const abbe_result result =
-      make_ring(drop, s->water->size, s->water->time - drop->time, &s->ring[s->rings], error);
-  if (result == ABBE_OK) s->rings++;
-  return result;
+  ABBE_TRY(make_ring(drop, s->water->size, s->water->time - drop->time, &s->ring[s->rings], error));
+  s->rings++;
+  return ABBE_OK;
 }
 
 /* Rings last until the slowest waves have left the basin. */

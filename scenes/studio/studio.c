@@ -162,8 +162,7 @@ static abbe_result add_ring(building *b, abbe_error *error) {
                      "name: band\nshape: ring\nmajor: %.6gmm\nminor: %.6gmm\nmirror: %s\n"
                      "transform:\n- rotate: {axis: [1, 0, 0], angle: 90}\nstand: [0, 0, 0]\n",
                      1e3 * r, 1e3 * wire, metal);
-  abbe_result result = append(b, item, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(append(b, item, error));
   const double x = s->size[0] / hypot(s->size[0], s->size[1]) * sqrt(2);
   const double y = s->size[1] / hypot(s->size[0], s->size[1]) * sqrt(2);
   const double rim = w / sqrt(2);
@@ -327,16 +326,15 @@ static abbe_result check_names(const building *b, abbe_error *error) {
     return abbe_error_set(
         error, ABBE_INVALID_ARGUMENT,
         "a metal is for a ring or a setting: add --with ring or --setting prongs");
-  const abbe_result result = check_name(b, b->studio->material, false, error);
-  return result == ABBE_OK ? check_name(b, b->studio->metal, true, error) : result;
+  ABBE_TRY(check_name(b, b->studio->material, false, error));
+  return check_name(b, b->studio->metal, true, error);
 }
 
 static abbe_result read_stones(building *b, const char *path, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < b->count && result == ABBE_OK; i++)
-    result = abbe_studio_stone_read(i == 0 ? path : b->studio->more[i - 1], b->studio, &b->stone[i],
-                                    error);
-  return result;
+  for (size_t i = 0; i < b->count; i++)
+    ABBE_TRY(abbe_studio_stone_read(i == 0 ? path : b->studio->more[i - 1], b->studio, &b->stone[i],
+                                    error));
+  return ABBE_OK;
 }
 
 abbe_result abbe_studio_scene(const char *path, const abbe_studio *studio, const char *folder,

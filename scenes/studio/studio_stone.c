@@ -120,8 +120,7 @@ static abbe_result read_mesh(const struct kind *kind, const abbe_studio *studio,
                              abbe_studio_stone *out, abbe_error *error) {
   abbe_mesh mesh = {0};
   double min[3] = {INFINITY, INFINITY, INFINITY}, max[3] = {-INFINITY, -INFINITY, -INFINITY};
-  const abbe_result result = abbe_mesh_load(out->path, ABBE_NORMALS_AUTO, &mesh, NULL, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_mesh_load(out->path, ABBE_NORMALS_AUTO, &mesh, NULL, error));
   for (size_t v = 0; v < mesh.vertex_count; v++)
     for (int k = 0; k < 3; k++) {
       min[k] = fmin(min[k], mesh.position[v][k]);

@@ -261,11 +261,10 @@ static abbe_result read_all(const abbe_image *image, const char *name, abbe_map_
 abbe_result abbe_map_layout_write(const abbe_map_layout *layout, const char *light,
                                   abbe_image *image, abbe_error *error) {
   abbe_map_layout copy = *layout;
-  abbe_result result = abbe_map_layout_check(layout, error);
-  if (result == ABBE_OK) result = write_all(&copy, image, error);
-  if (result == ABBE_OK && light != NULL)
-    result = abbe_image_set_attribute(image, light_name, light, error);
-  return result;
+  ABBE_TRY(abbe_map_layout_check(layout, error));
+  ABBE_TRY(write_all(&copy, image, error));
+  if (light != NULL) ABBE_TRY(abbe_image_set_attribute(image, light_name, light, error));
+  return ABBE_OK;
 }
 
 abbe_result abbe_map_layout_read(const abbe_image *image, const char *name, abbe_map_layout *out,
@@ -349,13 +348,12 @@ abbe_result abbe_map_resample(const abbe_image *from, const char *name, const ab
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a texel cannot be cut into %zu parts a side; it may be 1 to %d", parts,
                           ABBE_MAP_RESAMPLE_MAX_PARTS);
-  abbe_result result = abbe_map_layout_read(from, name, &w.layout, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_map_layout_read(from, name, &w.layout, error));
   if (!same_light(&w.layout.view, &to->view))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s is the map of a light in another place than the layout's", name);
-  result = abbe_image_make(width, height, from->channels, (const char *const *)from->channel, out,
-                           error);
+  abbe_result result = abbe_image_make(width, height, from->channels,
+                                       (const char *const *)from->channel, out, error);
   if (result == ABBE_OK) result = fill(&w, out, error);
   if (result != ABBE_OK) abbe_image_free(out);
   return result;

@@ -115,8 +115,7 @@ static abbe_result check_kind(const abbe_volume_body *b, const abbe_object *o, a
 abbe_result abbe_volume_body_find(const abbe_volume_body *body, const abbe_object *object,
                                   abbe_volume_place *out, abbe_error *error) {
   *out = (abbe_volume_place){.turn = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-  abbe_result result = check_kind(body, object, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_kind(body, object, error));
   find_centre(object, out->centre);
   double off = fabs(object->exact.radius - body->radius), now[3][3];
   if (!body->ball) {
@@ -299,8 +298,7 @@ static abbe_result make_room(size_t count, abbe_body_symmetry *out, abbe_error *
 
 abbe_result abbe_body_symmetry_find(const abbe_object *object, const double centre[3],
                                     double radius, abbe_body_symmetry *out, abbe_error *error) {
-  abbe_result result = make_room(ABBE_BODY_SYMMETRY_MOST, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(make_room(ABBE_BODY_SYMMETRY_MOST, out, error));
   const bool crystal = object->material != NULL && abbe_material_is_crystal(object->material);
   if (object->exact.kind == ABBE_EXACT_SPHERE || crystal || !(radius > 0)) return ABBE_OK;
   search s = {.found = out};
@@ -330,8 +328,7 @@ abbe_result abbe_body_symmetry_make(size_t count, const double (*map)[9], abbe_b
                           "%zu maps are no symmetry: it may be 1 to %d turns and reflections, of "
                           "which the first moves nothing",
                           count, ABBE_BODY_SYMMETRY_MOST);
-  const abbe_result result = make_room(count, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(make_room(count, out, error));
   memcpy(out->map, map, count * sizeof *map);
   out->count = count;
   return ABBE_OK;

@@ -156,10 +156,9 @@ static abbe_result write_attributes(const abbe_caustic_volume *v, abbe_image *im
       {"abbe:volume_units", kinds[v->kind].units},
       {exits ? "abbe:volume_exits" : "abbe:volume_byte", exits ? points : byte}};
   const size_t count = sizeof all / sizeof *all - (printed || exits ? 0 : 1);
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < count && result == ABBE_OK; i++)
-    result = abbe_image_set_attribute(image, all[i][0], all[i][1], error);
-  return result;
+  for (size_t i = 0; i < count; i++)
+    ABBE_TRY(abbe_image_set_attribute(image, all[i][0], all[i][1], error));
+  return ABBE_OK;
 }
 
 /* Nine numbers a map. */
@@ -429,9 +428,8 @@ abbe_result abbe_volume_file_read(const char *path, abbe_caustic_volume *out, ab
   abbe_region_desc region;
   double nodes[4];
   abbe_error why = {0};
-  abbe_result result = abbe_exr_read(path, &image, error);
-  if (result != ABBE_OK) return result;
-  result = read_attributes(path, &image, out, &region, nodes, error);
+  ABBE_TRY(abbe_exr_read(path, &image, error));
+  abbe_result result = read_attributes(path, &image, out, &region, nodes, error);
   if (result == ABBE_OK) {
     result = abbe_volume_region_make(&region, &out->region, &why);
     if (result == ABBE_OK)

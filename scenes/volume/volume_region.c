@@ -155,9 +155,8 @@ static abbe_result check(const abbe_region_desc *d, abbe_error *error) {
 static abbe_result make_shells(abbe_volume_region *r, abbe_error *error) {
   const abbe_region_desc *d = &r->desc;
   const bool octahedral = d->kind == ABBE_REGION_OCTAHEDRAL;
-  abbe_result result = octahedral ? abbe_sphere_mesh_octahedral(d->side, &r->mesh, error)
-                                  : abbe_sphere_mesh_geodesic(d->levels, &r->mesh, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(octahedral ? abbe_sphere_mesh_octahedral(d->side, &r->mesh, error)
+                      : abbe_sphere_mesh_geodesic(d->levels, &r->mesh, error));
   r->rows = d->shells;
   r->row = octahedral ? d->side * d->side : r->mesh.face_count;
   r->radius = calloc(r->rows + 1, sizeof *r->radius);

@@ -228,10 +228,9 @@ static abbe_result take_index(reader *r, const double found[OTHER]) {
     return pass_over(r, ABBE_SCHEMA,
                      "n lies from 0.001 to 1000, k from 0 to 1000, an uncertainty is not negative",
                      first);
-  abbe_result result =
-      n ? add(r, &r->out->n, found[WAVELENGTH], found[INDEX], found[UNCERTAINTY]) : ABBE_OK;
-  if (k && result == ABBE_OK) result = add(r, &r->out->k, found[WAVELENGTH], found[EXTINCTION], 0);
-  return result;
+  ABBE_TRY(n ? add(r, &r->out->n, found[WAVELENGTH], found[INDEX], found[UNCERTAINTY]) : ABBE_OK);
+  if (k) ABBE_TRY(add(r, &r->out->k, found[WAVELENGTH], found[EXTINCTION], 0));
+  return ABBE_OK;
 }
 
 static abbe_result take_point(reader *r) {
@@ -328,11 +327,10 @@ static abbe_result order(reader *r, abbe_points *list, double unit_nm, const cha
   char range[64];
   abbe_number_format(range, sizeof range, "outside %g to %g nm", ABBE_SPECTRUM_LOW_NM,
                      ABBE_SPECTRUM_HIGH_NM);
-  abbe_result result = lose(r, list->count - kept, what, range);
+  ABBE_TRY(lose(r, list->count - kept, what, range));
   list->count = kept;
-  if (result == ABBE_OK) result = abbe_points_sort(list, repeats ? NULL : &dropped, r->error);
-  return result != ABBE_OK ? result
-                           : lose(r, dropped, what, "at a wavelength that was there before");
+  ABBE_TRY(abbe_points_sort(list, repeats ? NULL : &dropped, r->error));
+  return lose(r, dropped, what, "at a wavelength that was there before");
 }
 
 static size_t count_of(const abbe_csv_points *points) {
@@ -347,14 +345,14 @@ static abbe_result finish(reader *r) {
                               ? "a wavelength and a reflectance, such as 380, 0.18"
                           : r->light ? "a wavelength and a power, such as 380, 49.98"
                                      : "a wavelength and an index, such as 587.6, 1.5168");
-  abbe_result result = find_unit(r, &unit_nm);
-  if (result == ABBE_OK) result = order(r, &r->out->n, unit_nm, "n");
-  if (result == ABBE_OK) result = order(r, &r->out->k, unit_nm, "k");
-  if (result == ABBE_OK) result = order(r, &r->out->power, unit_nm, r->noun);
-  if (result == ABBE_OK && count_of(r->out) == 0)
-    result = abbe_error_set(r->error, ABBE_SCHEMA, "%s: no point lies from %g to %g nm", r->name,
-                            ABBE_SPECTRUM_LOW_NM, ABBE_SPECTRUM_HIGH_NM);
-  return result;
+  ABBE_TRY(find_unit(r, &unit_nm));
+  ABBE_TRY(order(r, &r->out->n, unit_nm, "n"));
+  ABBE_TRY(order(r, &r->out->k, unit_nm, "k"));
+  ABBE_TRY(order(r, &r->out->power, unit_nm, r->noun));
+  if (count_of(r->out) == 0)
+    ABBE_TRY(abbe_error_set(r->error, ABBE_SCHEMA, "%s: no point lies from %g to %g nm", r->name,
+                            ABBE_SPECTRUM_LOW_NM, ABBE_SPECTRUM_HIGH_NM));
+  return ABBE_OK;
 }
 
 abbe_result abbe_csv_points_parse(const char *text, size_t size, const char *name,
@@ -387,9 +385,8 @@ abbe_result abbe_csv_points_load(const char *path, const abbe_csv_options *optio
   *out = (abbe_csv_points){0};
   char *text = NULL;
   size_t size = 0;
-  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &text, &size, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_csv_points_parse(text, size, path, options, out, report, error);
+  ABBE_TRY(abbe_file_read_text(path, MAX_BYTES, &text, &size, error));
+  abbe_result result = abbe_csv_points_parse(text, size, path, options, out, report, error);
   free(text);
   return result;
 }

@@ -266,16 +266,14 @@ abbe_result abbe_fit_make(const abbe_index_points *points, const abbe_fit_reques
   *out = (abbe_fit){0};
   abbe_fit_data data;
   abbe_fit_weakest weakest = {0};
-  abbe_result result = choose(points, request, &data, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(choose(points, request, &data, error));
   bool cauchy = request->form == ABBE_FIT_CAUCHY;
   const char *form = cauchy ? "Cauchy" : "Sellmeier";
   abbe_fit fit = {.free = cauchy ? data.terms : 2 * data.terms};
-  result = check_data(&data, fit.free, form, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_data(&data, fit.free, form, error));
   abbe_gsl_guard_enter();
-  result = cauchy ? fit_cauchy(&data, &fit, &weakest, error)
-                  : abbe_fit_sellmeier(&data, &fit, &weakest, error);
+  abbe_result result = cauchy ? fit_cauchy(&data, &fit, &weakest, error)
+                              : abbe_fit_sellmeier(&data, &fit, &weakest, error);
   abbe_gsl_guard_leave();
   if (result != ABBE_OK) return result;
   measure(&data, &fit);

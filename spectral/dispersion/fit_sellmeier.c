@@ -270,11 +270,10 @@ abbe_result abbe_fit_sellmeier(const abbe_fit_data *data, abbe_fit *fit, abbe_fi
                .high = data->lambda_nm[data->count - 1] / 1000};
   start best;
   size_t order[MAX_TERMS];
-  abbe_result result = check_indices(data, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_indices(data, error));
   gsl_multifit_nlinear_workspace *work = open_descent(&f);
   if (work == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a Sellmeier fit");
-  result = search(&f, &best, work, error);
+  abbe_result result = search(&f, &best, work, error);
   if (result == ABBE_OK) {
     write_dispersion(&f, &best, order, fit);
     result = write_covariance(&f, &best, order, work, fit, weakest, error);

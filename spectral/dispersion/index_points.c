@@ -86,8 +86,7 @@ static abbe_result take(const abbe_points *points, const char *name, abbe_index_
         error, ABBE_SCHEMA,
         "%s: %zu of %zu points have an uncertainty above 0; all have one, or none", name, uncertain,
         points->count);
-  abbe_result result = allocate(out, points->count, uncertain > 0, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(allocate(out, points->count, uncertain > 0, error));
   out->count = points->count;
   for (size_t i = 0; i < points->count; i++) {
     out->lambda_nm[i] = points->point[i].lambda_nm;

@@ -215,8 +215,7 @@ static abbe_result compare_indices(place *places, size_t count, abbe_findings *f
     for (size_t k = i + 1; k < kept && places[k].n[0] - places[i].n[0] <= NEAR; k++) {
       double off = apart(&places[i], &places[k]);
       if (!(off <= NEAR)) continue;
-      abbe_result result = note_pair(&places[i], &places[k], off, findings, error);
-      if (result != ABBE_OK) return result;
+      ABBE_TRY(note_pair(&places[i], &places[k], off, findings, error));
       break; /* each row is named once, however many are alike */
     }
   return ABBE_OK;

@@ -83,8 +83,7 @@ abbe_result abbe_table_edit_make(const char *path, abbe_table_edit **out, abbe_e
   if (access(path, F_OK) == 0)
     return abbe_error_set(error, ABBE_IO, "%s: is there already; a new table wants a new name",
                           path);
-  abbe_result result = abbe_table_edit_parse(empty, strlen(empty), path, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_table_edit_parse(empty, strlen(empty), path, out, error));
   (*out)->in_memory = false;
   (*out)->is_new = true;
   (*out)->before_size = 0;
@@ -133,14 +132,14 @@ static char *nested(char *rest, const char *value) {
 abbe_result abbe_table_edit_set(abbe_table_edit *edit, const char *name, const char *key,
                                 const char *value, abbe_error *error) {
   abbe_table_place p;
-  abbe_result result = abbe_table_place_key(&edit->yaml, name, key, &p, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_table_place_key(&edit->yaml, name, key, &p, error));
   if (p.found) return abbe_yaml_edit_replace(&edit->yaml, p.parent, p.index, value, error);
   char *whole = nested(p.rest, value);
   if (whole == NULL) return no_memory(error, edit->yaml.name);
   size_t after =
       p.in_record ? abbe_table_place_after(edit->yaml.yaml, p.parent, p.rest) : ABBE_YAML_EDIT_END;
-  result = abbe_yaml_edit_insert_pair(&edit->yaml, p.parent, after, p.rest, whole, error);
+  abbe_result result =
+      abbe_yaml_edit_insert_pair(&edit->yaml, p.parent, after, p.rest, whole, error);
   free(whole);
   return result;
 }
@@ -167,15 +166,13 @@ static abbe_result set_each(abbe_table_edit *edit, const char *name, const char 
     char path[160];
     abbe_table_place p;
     snprintf(path, sizeof path, "%.120s.%zu", key, i);
-    abbe_result result = abbe_table_place_key(&edit->yaml, name, path, &p, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_table_place_key(&edit->yaml, name, path, &p, error));
     double old = 0;
     abbe_yaml_node item = abbe_yaml_item(edit->yaml.yaml, p.parent, p.index);
     if (abbe_yaml_number(edit->yaml.yaml, item, key, -1e308, 1e308, &old, NULL) == ABBE_OK &&
         old == value[i])
       continue;
-    result = abbe_table_edit_set_number(edit, name, path, value[i], error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_table_edit_set_number(edit, name, path, value[i], error));
   }
   return ABBE_OK;
 }
@@ -183,8 +180,7 @@ static abbe_result set_each(abbe_table_edit *edit, const char *name, const char 
 abbe_result abbe_table_edit_set_numbers(abbe_table_edit *edit, const char *name, const char *key,
                                         const double *value, size_t count, abbe_error *error) {
   abbe_table_place p;
-  abbe_result result = abbe_table_place_key(&edit->yaml, name, key, &p, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_table_place_key(&edit->yaml, name, key, &p, error));
   abbe_yaml_node old = {0};
   if (p.found && abbe_yaml_is_mapping(edit->yaml.yaml, p.parent))
     old = abbe_yaml_value(edit->yaml.yaml, p.parent, p.index);
@@ -193,7 +189,7 @@ abbe_result abbe_table_edit_set_numbers(abbe_table_edit *edit, const char *name,
       set_each(edit, name, key, value, count, NULL) == ABBE_OK)
     return ABBE_OK;
   char *list = NULL;
-  result = abbe_yaml_edit_list(value, count, &list, error);
+  abbe_result result = abbe_yaml_edit_list(value, count, &list, error);
   if (result == ABBE_OK) result = abbe_table_edit_set(edit, name, key, list, error);
   free(list);
   return result;
@@ -210,16 +206,14 @@ abbe_result abbe_table_edit_unset(abbe_table_edit *edit, const char *name, const
 
 abbe_result abbe_table_edit_add(abbe_table_edit *edit, const char *record, abbe_error *error) {
   size_t index;
-  abbe_result result = abbe_table_place_list(&edit->yaml, &index, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_table_place_list(&edit->yaml, &index, error));
   return abbe_yaml_edit_append(&edit->yaml, abbe_yaml_root(edit->yaml.yaml), index, record, error);
 }
 
 abbe_result abbe_table_edit_remove(abbe_table_edit *edit, const char *name, abbe_error *error) {
   size_t index = 0;
   abbe_yaml_node record, list = abbe_table_place_records(&edit->yaml);
-  abbe_result result = abbe_table_place_record(&edit->yaml, name, &index, &record, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_table_place_record(&edit->yaml, name, &index, &record, error));
   if (abbe_yaml_count(edit->yaml.yaml, list) == 1)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: '%.80s' is its only record, and a table wants at least one",
@@ -231,8 +225,7 @@ abbe_result abbe_table_edit_rename(abbe_table_edit *edit, const char *name, cons
                                    abbe_error *error) {
   size_t index = 0, other = 0;
   abbe_yaml_node record, taken;
-  abbe_result result = abbe_table_place_record(&edit->yaml, name, &index, &record, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_table_place_record(&edit->yaml, name, &index, &record, error));
   if (abbe_table_place_record(&edit->yaml, new_name, &other, &taken, NULL) == ABBE_OK &&
       other != index)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -245,8 +238,7 @@ abbe_result abbe_table_edit_record(abbe_table_edit *edit, const char *name, char
                                    abbe_error *error) {
   size_t index = 0;
   abbe_yaml_node record;
-  abbe_result result = abbe_table_place_record(&edit->yaml, name, &index, &record, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_table_place_record(&edit->yaml, name, &index, &record, error));
   return abbe_yaml_edit_item(&edit->yaml, abbe_table_place_records(&edit->yaml), index, out, error);
 }
 
@@ -284,8 +276,7 @@ abbe_result abbe_table_edit_revert(abbe_table_edit *edit, abbe_error *error) {
   abbe_yaml_edit before;
   const char *text = edit->is_new ? empty : edit->before;
   size_t size = edit->is_new ? strlen(empty) : edit->before_size;
-  abbe_result result = abbe_yaml_edit_make(text, size, edit->yaml.name, &before, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_yaml_edit_make(text, size, edit->yaml.name, &before, error));
   abbe_yaml_edit_free(&edit->yaml);
   edit->yaml = before;
   return ABBE_OK;
@@ -315,8 +306,7 @@ static abbe_result check_unchanged(const abbe_table_edit *edit, abbe_error *erro
   }
   char *text = NULL;
   size_t size = 0;
-  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &text, &size, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_file_read_text(path, MAX_BYTES, &text, &size, error));
   bool same = size == edit->before_size && memcmp(text, edit->before, size) == 0;
   free(text);
   if (same) return ABBE_OK;
@@ -348,12 +338,11 @@ abbe_result abbe_table_edit_save(abbe_table_edit *edit, abbe_error *error) {
   if (edit->yaml.size == edit->before_size &&
       memcmp(edit->yaml.text, edit->before, edit->before_size) == 0)
     return ABBE_OK;
-  abbe_result result = abbe_table_edit_allow(edit, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_table_edit_allow(edit, error));
   char *copy = malloc(edit->yaml.size + 1);
   if (copy == NULL) return no_memory(error, edit->yaml.name);
   memcpy(copy, edit->yaml.text, edit->yaml.size);
-  result = check_unchanged(edit, error);
+  abbe_result result = check_unchanged(edit, error);
   if (result == ABBE_OK)
     result = abbe_file_write(edit->yaml.name, edit->yaml.text, edit->yaml.size, error);
   if (result != ABBE_OK) {
@@ -422,10 +411,8 @@ static abbe_result pass(abbe_table_edit *edit, const abbe_material_table *known,
   const char *text = abbe_table_edit_text(edit, &size);
   abbe_material_table table;
   abbe_findings found = {0};
-  abbe_result result =
-      abbe_material_table_parse_lenient(text, size, "the table", &table, NULL, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_check_table(&table, known, &found, error);
+  ABBE_TRY(abbe_material_table_parse_lenient(text, size, "the table", &table, NULL, error));
+  abbe_result result = abbe_check_table(&table, known, &found, error);
   if (result == ABBE_OK) result = apply(edit, &table, &found, out, set, error);
   abbe_findings_free(&found);
   abbe_material_table_free(&table);

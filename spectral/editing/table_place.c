@@ -148,8 +148,7 @@ abbe_result abbe_table_place_key(const abbe_yaml_edit *edit, const char *name, c
   const abbe_yaml *yaml = edit->yaml;
   size_t item;
   abbe_yaml_node at;
-  abbe_result result = abbe_table_place_record(edit, name, &item, &at, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_table_place_record(edit, name, &item, &at, error));
   *out = (abbe_table_place){.in_record = true};
   if (!is_path(key))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

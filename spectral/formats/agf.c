@@ -76,8 +76,7 @@ static void title_of(const char *remark, char title[MAX_TITLE + 8]) {
 static abbe_result read_source(reader *r, abbe_material *m) {
   glass *g = &r->glass;
   if (g->comment != NULL && strncasecmp(g->comment, "source:", 7) == 0) {
-    abbe_result result = keep_text(r, g->comment + 7, &m->source);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(keep_text(r, g->comment + 7, &m->source));
     if (m->source != NULL) return ABBE_OK;
   }
   char text[MAX_TEXT], title[MAX_TITLE + 8] = "";
@@ -234,8 +233,7 @@ static abbe_result take_glass(reader *r, abbe_material *m) {
                     twice ? why.text + named + 2 : why.text);
     return ABBE_OK;
   }
-  result = read_absorption(r, m);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_absorption(r, m));
   if (g->nm.commas || g->cd.commas || g->ld.commas)
     abbe_report_add(r->report, ABBE_NOTE_CHANGED, g->line, g->name,
                     "its decimal commas are read as points");
@@ -378,8 +376,7 @@ static abbe_result finish(reader *r, const char *name) {
   if (r->glasses == 0)
     return abbe_error_set(r->error, ABBE_PARSE,
                           "%s: has no NM line, so it is no Zemax glass catalogue", name);
-  abbe_result result = abbe_material_table_unique(r->table, r->report, r->error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_material_table_unique(r->table, r->report, r->error));
   if (r->table->count == 0) {
     const char *why = first_reason(r);
     return abbe_error_set(r->error, ABBE_SCHEMA, "%s: none of its %zu glasses can be used%s%s",
@@ -399,14 +396,13 @@ abbe_result abbe_agf_parse(const char *bytes, size_t size, const char *name,
   *out = (abbe_material_table){0};
   char *text = NULL;
   size_t length = 0;
-  abbe_result result = abbe_encoding_decode(bytes, size, &text, &length, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_encoding_decode(bytes, size, &text, &length, error));
   reader r = {.file = abbe_file_name(name),
               .table = out,
               .report = report,
               .error = error,
               .noted = report != NULL ? report->count : 0};
-  result = take_lines(&r, text);
+  abbe_result result = take_lines(&r, text);
   clear_glass(&r.glass);
   free(text);
   if (result == ABBE_OK) result = finish(&r, name);

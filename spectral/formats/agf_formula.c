@@ -324,7 +324,7 @@ abbe_result abbe_agf_formula_write(const abbe_dispersion *dispersion, double min
   }
   *fidelity = ABBE_AGF_FITTED;
   abbe_dispersion fit;
-  abbe_result result = abbe_fit_dispersion(dispersion, 4, min_nm, max_nm, &fit, max_error, error);
-  if (result == ABBE_OK) write_cauchy(&fit, out);
-  return result;
+  ABBE_TRY(abbe_fit_dispersion(dispersion, 4, min_nm, max_nm, &fit, max_error, error));
+  write_cauchy(&fit, out);
+  return ABBE_OK;
 }

@@ -71,8 +71,7 @@ static abbe_result detect(const char *text, size_t size, abbe_import_format *out
   bool is_store = size >= sizeof store && memcmp(text, store, sizeof store) == 0;
   *out = is_store ? ABBE_IMPORT_STORE : ABBE_IMPORT_AUTO;
   if (is_store) return ABBE_OK;
-  abbe_result result = abbe_encoding_decode(text, size, &clean, &length, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_encoding_decode(text, size, &clean, &length, error));
   *out = say(clean, true, marked);
   if (*out == ABBE_IMPORT_AUTO) *out = say(clean, false, marked);
   if (*out == ABBE_IMPORT_AUTO) *out = say(clean, false, numbered);

@@ -196,8 +196,7 @@ static void write_fits(const abbe_material *m, FILE *to) {
 
 abbe_result abbe_material_write(const abbe_material *material, FILE *to, abbe_error *error) {
   const abbe_material *m = material;
-  abbe_result result = abbe_material_check(m, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_material_check(m, error));
   write_text("  - name", m->name, to);
   write_text("    description", m->description, to);
   write_dispersion(m, to);
@@ -220,8 +219,7 @@ static abbe_result write_table(const abbe_material_table *table, FILE *to, abbe_
   fputs(table->description != NULL ? "\nmaterials:\n" : "materials:\n", to);
   for (size_t i = 0; i < table->count; i++) {
     if (i > 0) fputc('\n', to);
-    abbe_result result = abbe_material_write(&table->material[i], to, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_material_write(&table->material[i], to, error));
   }
   return ABBE_OK;
 }

@@ -192,10 +192,10 @@ static abbe_result read_table(reader *r, abbe_yaml_node entry, columns which) {
 
 static abbe_result read_tabulated_n(reader *r, abbe_yaml_node entry, columns which) {
   abbe_material *m = r->m;
-  abbe_result result = read_table(r, entry, which);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_table(r, entry, which));
   m->dispersion = (abbe_dispersion){.model = ABBE_DISPERSION_TABULATED};
-  result = abbe_points_spectrum(&r->n, ABBE_INTERPOLATION_MONOTONE, &m->dispersion.table, r->error);
+  abbe_result result =
+      abbe_points_spectrum(&r->n, ABBE_INTERPOLATION_MONOTONE, &m->dispersion.table, r->error);
   m->min_nm = r->n.point[0].lambda_nm;
   m->max_nm = r->n.point[r->n.count - 1].lambda_nm;
   r->index = result == ABBE_OK;
@@ -404,8 +404,8 @@ static abbe_result read_properties(reader *r, abbe_yaml_node root) {
   read_ratings(r, abbe_yaml_get(r->yaml, node, "resistance"));
   if (abbe_material_catalogue_bound(c) > 0)
     note(r, ABBE_NOTE_LOST, node, "properties that are too large to be true are left out");
-  abbe_result result = keep(r, node, "glass_code", &c->code);
-  return result == ABBE_OK ? keep(r, node, "glass_status", &c->status) : result;
+  ABBE_TRY(keep(r, node, "glass_code", &c->code));
+  return keep(r, node, "glass_status", &c->status);
 }
 
 /* ---- names and whole files ---- */

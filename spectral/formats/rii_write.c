@@ -182,8 +182,7 @@ static void note_losses(const abbe_material *m, abbe_report *report) {
 abbe_result abbe_rii_write(const abbe_material *material, FILE *to, abbe_report *report,
                            abbe_error *error) {
   const abbe_material *m = material;
-  abbe_result result = abbe_material_check(m, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_material_check(m, error));
   bool good = write_text(to, "REFERENCES", m->source) && write_text(to, "COMMENTS", m->comment);
   if (!good) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for a text", m->name);
   fputs("DATA:\n", to);

@@ -122,8 +122,7 @@ static abbe_result sellmeier_of(const claim *c, abbe_dispersion *out, abbe_error
 abbe_result abbe_convert_make(const abbe_given *given, abbe_fit_form form, abbe_dispersion *out,
                               abbe_error *error) {
   *out = (abbe_dispersion){0};
-  abbe_result result = check(given, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check(given, error));
   claim c = claim_of(given);
   if (form == ABBE_FIT_CAUCHY && given->kind == ABBE_GIVEN_A_B) {
     *out = (abbe_dispersion){
@@ -185,8 +184,7 @@ static abbe_result same_of(const abbe_material *m, abbe_given_kind kind, abbe_fi
     given.second = fit.dispersion.c[1];
   }
   abbe_dispersion made;
-  abbe_result result = abbe_convert_make(&given, form, &made, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_convert_make(&given, form, &made, error));
   return abbe_index_difference_of_curves(&made, &m->dispersion, min_nm, max_nm, out, error);
 }
 
@@ -218,11 +216,10 @@ abbe_result abbe_convert_judge(const abbe_given *given, abbe_fit_form form,
                                abbe_convert_error *out, abbe_error *error) {
   abbe_dispersion made;
   *out = (abbe_convert_error){.typical = NAN, .largest = NAN, .at_nm = NAN};
-  abbe_result result = abbe_convert_make(given, form, &made, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_convert_make(given, form, &made, error));
   abbe_index_points probe; /* refuses a range that is none, or meets a pole */
   abbe_error why = {0};
-  result = abbe_index_points_sample(&made, min_nm, max_nm, 401, 4001, &probe, &why);
+  abbe_result result = abbe_index_points_sample(&made, min_nm, max_nm, 401, 4001, &probe, &why);
   abbe_index_points_free(&probe);
   if (result != ABBE_OK)
     return abbe_error_set(error, result,

@@ -86,13 +86,11 @@ static abbe_result check_range(const abbe_material *m, abbe_error *error) {
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: its range of %g to %g nm does not ascend between %g and %g", m->name,
                           m->min_nm, m->max_nm, ABBE_SPECTRUM_LOW_NM, ABBE_SPECTRUM_HIGH_NM);
-  abbe_result result = check_points(m, table, "its points", error);
-  for (int i = 0; i < 2 && result == ABBE_OK; i++)
-    result = check_points(m, m->outer[i].table,
-                          i == 0 ? "those of its index alpha" : "those of its index gamma", error);
-  return result == ABBE_OK
-             ? check_points(m, m->extraordinary.table, "those of its extraordinary index", error)
-             : result;
+  ABBE_TRY(check_points(m, table, "its points", error));
+  for (int i = 0; i < 2; i++)
+    ABBE_TRY(check_points(m, m->outer[i].table,
+                          i == 0 ? "those of its index alpha" : "those of its index gamma", error));
+  return check_points(m, m->extraordinary.table, "those of its extraordinary index", error);
 }
 
 /* A formula that has a pole or no root inside its own range was copied wrongly, most often with
@@ -211,8 +209,7 @@ static abbe_result check_conductor(const abbe_material *m, abbe_error *error) {
 }
 
 abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *error) {
-  abbe_result result = abbe_material_check_name(material->name, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_material_check_name(material->name, error));
   if (material->source == NULL || material->source[0] == '\0')
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: it names no source; say where the numbers come from",
@@ -220,7 +217,7 @@ abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *
   abbe_error why;
   if (abbe_dispersion_check(&material->dispersion, &why) != ABBE_OK)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: %s", material->name, why.text);
-  result = check_conductor(material, error);
+  abbe_result result = check_conductor(material, error);
   if (result == ABBE_OK) result = check_extraordinary(material, error);
   if (result == ABBE_OK) result = check_outer(material, error);
   if (result == ABBE_OK) result = abbe_material_check_absorption(material, error);
@@ -328,11 +325,10 @@ abbe_result abbe_material_n_absolute(const abbe_material *material, double lambd
                                      abbe_error *error) {
   const abbe_index_shift *s = &material->dispersion.shift;
   const double own_c = isnan(material->temperature_c) ? USUAL_C : material->temperature_c;
-  const abbe_result result = abbe_material_n(material, lambda_nm, n, error);
-  if (result == ABBE_OK)
-    *n *= s->on ? abbe_air_n(lambda_nm, s->to_c, s->pressure_atm)
-                : abbe_air_n(lambda_nm, own_c, own_atm(material));
-  return result;
+  ABBE_TRY(abbe_material_n(material, lambda_nm, n, error));
+  *n *= s->on ? abbe_air_n(lambda_nm, s->to_c, s->pressure_atm)
+              : abbe_air_n(lambda_nm, own_c, own_atm(material));
+  return ABBE_OK;
 }
 
 static bool is_given(const abbe_dispersion *d) {

@@ -24,8 +24,7 @@ static abbe_result read_colour(abbe_record_reading *r, abbe_yaml_node where, abb
 static abbe_result read_attenuation(abbe_record_reading *r, abbe_yaml_node where,
                                     abbe_spectrum **out) {
   abbe_interpolation interpolation = ABBE_INTERPOLATION_LINEAR;
-  abbe_result result = abbe_record_read_interpolation(r, where, &interpolation);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_record_read_interpolation(r, where, &interpolation));
   return abbe_record_read_points(r, abbe_yaml_get(r->yaml, where, "attenuation_per_m"),
                                  "attenuation_per_m", 0, 1e15, interpolation, out);
 }
@@ -112,8 +111,7 @@ static abbe_result read_axes(abbe_record_reading *r, abbe_yaml_node where, const
                             key[i]);
     if (!abbe_yaml_is_mapping(r->yaml, axis))
       return abbe_yaml_fail(r->yaml, axis, r->error, "'%s' wants " WAYS, key[i]);
-    abbe_result result = read_absorbed(r, axis, out[i]);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(read_absorbed(r, axis, out[i]));
   }
   return abbe_yaml_check_keys(r->yaml, where, "'absorption'", r->error);
 }
@@ -166,38 +164,31 @@ static abbe_result read_fit(abbe_record_reading *r, abbe_yaml_node fits, const c
   if (where.id == 0) return ABBE_OK;
   abbe_material_fit fit = {
       .terms = terms, .min_nm = ABBE_WAVELENGTH_MIN_NM, .max_nm = ABBE_WAVELENGTH_MAX_NM};
-  abbe_result result = abbe_yaml_require(r->yaml, where, "coefficients", &node, r->error);
-  if (result == ABBE_OK)
-    result =
-        abbe_yaml_get_numbers(r->yaml, where, "coefficients", terms, -1e12, 1e12, fit.c, r->error);
-  if (result == ABBE_OK) result = abbe_yaml_require(r->yaml, where, "max_error", &node, r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(r->yaml, where, "max_error", 0, 1e12, &fit.max_error, r->error);
-  if (result == ABBE_OK)
-    result = abbe_record_read_range(r, where, "range_nm", &fit.min_nm, &fit.max_nm);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(r->yaml, where, key, r->error);
-  if (result == ABBE_OK) *out = fit;
-  return result;
+  ABBE_TRY(abbe_yaml_require(r->yaml, where, "coefficients", &node, r->error));
+  ABBE_TRY(
+      abbe_yaml_get_numbers(r->yaml, where, "coefficients", terms, -1e12, 1e12, fit.c, r->error));
+  ABBE_TRY(abbe_yaml_require(r->yaml, where, "max_error", &node, r->error));
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, where, "max_error", 0, 1e12, &fit.max_error, r->error));
+  ABBE_TRY(abbe_record_read_range(r, where, "range_nm", &fit.min_nm, &fit.max_nm));
+  ABBE_TRY(abbe_yaml_check_keys(r->yaml, where, key, r->error));
+  *out = fit;
+  return ABBE_OK;
 }
 
 static abbe_result read_fits(abbe_record_reading *r) {
   abbe_yaml_node fits = abbe_yaml_get(r->yaml, r->record, "fit");
   if (fits.id == 0) return ABBE_OK;
-  abbe_result result = read_fit(r, fits, "cauchy2", 2, &r->material->fit[0]);
-  if (result == ABBE_OK) result = read_fit(r, fits, "cauchy3", 3, &r->material->fit[1]);
-  return result != ABBE_OK ? result : abbe_yaml_check_keys(r->yaml, fits, "'fit'", r->error);
+  ABBE_TRY(read_fit(r, fits, "cauchy2", 2, &r->material->fit[0]));
+  ABBE_TRY(read_fit(r, fits, "cauchy3", 3, &r->material->fit[1]));
+  return abbe_yaml_check_keys(r->yaml, fits, "'fit'", r->error);
 }
 
 /* ---- what the source prints besides ---- */
 
 static abbe_result read_published(abbe_record_reading *r) {
   abbe_material *m = r->material;
-  abbe_result result =
-      abbe_yaml_get_number(r->yaml, r->record, "n_d", 1e-3, 1e3, &m->published_n_d, r->error);
-  if (result == ABBE_OK)
-    result =
-        abbe_yaml_get_number(r->yaml, r->record, "v_d", -1e6, 1e6, &m->published_v_d, r->error);
-  return result;
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, r->record, "n_d", 1e-3, 1e3, &m->published_n_d, r->error));
+  return abbe_yaml_get_number(r->yaml, r->record, "v_d", -1e6, 1e6, &m->published_v_d, r->error);
 }
 
 static abbe_result read_numbers(abbe_record_reading *r, abbe_yaml_node where, const char *key,
@@ -224,22 +215,18 @@ static abbe_result read_catalogue(abbe_record_reading *r) {
   abbe_material_catalogue *c = &r->material->catalogue;
   abbe_yaml_node where = abbe_yaml_get(r->yaml, r->record, "catalogue");
   if (where.id == 0) return ABBE_OK;
-  abbe_result result = abbe_yaml_get_string(r->yaml, where, "code", &c->code, r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_string(r->yaml, where, "status", &c->status, r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(r->yaml, where, "melt_frequency", 0, ABBE_MATERIAL_MELT_MOST,
-                                  &c->melt_frequency, r->error);
-  if (result == ABBE_OK) result = read_numbers(r, where, "expansion_per_k", 2, c->expansion_per_k);
-  if (result == ABBE_OK)
-    result = read_numbers(r, where, "expansion_range_k", 4, c->expansion_range_k);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(r->yaml, where, "dpgf", -ABBE_MATERIAL_DPGF_MOST,
-                                  ABBE_MATERIAL_DPGF_MOST, &c->dpgf, r->error);
-  if (result == ABBE_OK) result = read_numbers(r, where, "thermal", 6, c->thermal);
-  if (result == ABBE_OK) result = read_numbers(r, where, "ratings", 6, c->ratings);
+  ABBE_TRY(abbe_yaml_get_string(r->yaml, where, "code", &c->code, r->error));
+  ABBE_TRY(abbe_yaml_get_string(r->yaml, where, "status", &c->status, r->error));
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, where, "melt_frequency", 0, ABBE_MATERIAL_MELT_MOST,
+                                &c->melt_frequency, r->error));
+  ABBE_TRY(read_numbers(r, where, "expansion_per_k", 2, c->expansion_per_k));
+  ABBE_TRY(read_numbers(r, where, "expansion_range_k", 4, c->expansion_range_k));
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, where, "dpgf", -ABBE_MATERIAL_DPGF_MOST,
+                                ABBE_MATERIAL_DPGF_MOST, &c->dpgf, r->error));
+  ABBE_TRY(read_numbers(r, where, "thermal", 6, c->thermal));
+  ABBE_TRY(read_numbers(r, where, "ratings", 6, c->ratings));
   if (abbe_yaml_get(r->yaml, where, "ratings").id != 0) c->rating_count = 6;
-  return result != ABBE_OK ? result : abbe_yaml_check_keys(r->yaml, where, "'catalogue'", r->error);
+  return abbe_yaml_check_keys(r->yaml, where, "'catalogue'", r->error);
 }
 
 /* ---- records ---- */
@@ -254,20 +241,14 @@ static abbe_result check_name(abbe_record_reading *r) {
 static abbe_result read_texts(abbe_record_reading *r) {
   abbe_material *m = r->material;
   abbe_yaml_node node;
-  abbe_result result = abbe_yaml_require(r->yaml, r->record, "name", &node, r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_string(r->yaml, r->record, "name", &m->name, r->error);
-  if (result == ABBE_OK) result = check_name(r);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_string(r->yaml, r->record, "description", &m->description, r->error);
-  if (result == ABBE_OK) result = abbe_record_require(r, "source", &node);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_string(r->yaml, r->record, "source", &m->source, r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_string(r->yaml, r->record, "warning", &m->warning, r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_string(r->yaml, r->record, "comment", &m->comment, r->error);
-  return result;
+  ABBE_TRY(abbe_yaml_require(r->yaml, r->record, "name", &node, r->error));
+  ABBE_TRY(abbe_yaml_get_string(r->yaml, r->record, "name", &m->name, r->error));
+  ABBE_TRY(check_name(r));
+  ABBE_TRY(abbe_yaml_get_string(r->yaml, r->record, "description", &m->description, r->error));
+  ABBE_TRY(abbe_record_require(r, "source", &node));
+  ABBE_TRY(abbe_yaml_get_string(r->yaml, r->record, "source", &m->source, r->error));
+  ABBE_TRY(abbe_yaml_get_string(r->yaml, r->record, "warning", &m->warning, r->error));
+  return abbe_yaml_get_string(r->yaml, r->record, "comment", &m->comment, r->error);
 }
 
 /* Every key is asked for before the values are judged by what is missing, so that a mistyped key
@@ -287,21 +268,18 @@ static abbe_result read_record(abbe_record_reading *r) {
   abbe_material *m = r->material;
   m->line = abbe_yaml_line(r->yaml, r->record);
   m->temperature_c = NAN;
-  abbe_result result = check_record_keys(r);
-  if (result == ABBE_OK) result = read_texts(r);
-  if (result == ABBE_OK) result = abbe_record_read_dispersion(r);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_bool(r->yaml, r->record, "extrapolate", &m->extrapolate, r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(r->yaml, r->record, "temperature_c", -273.15, 1e4,
-                                  &m->temperature_c, r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_bool(r->yaml, r->record, "n_absolute", &m->n_absolute, r->error);
-  if (result == ABBE_OK) result = read_absorption(r);
-  if (result == ABBE_OK) result = read_published(r);
-  if (result == ABBE_OK) result = read_density(r);
-  if (result == ABBE_OK) result = read_catalogue(r);
-  return result == ABBE_OK ? read_fits(r) : result;
+  ABBE_TRY(check_record_keys(r));
+  ABBE_TRY(read_texts(r));
+  ABBE_TRY(abbe_record_read_dispersion(r));
+  ABBE_TRY(abbe_yaml_get_bool(r->yaml, r->record, "extrapolate", &m->extrapolate, r->error));
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, r->record, "temperature_c", -273.15, 1e4,
+                                &m->temperature_c, r->error));
+  ABBE_TRY(abbe_yaml_get_bool(r->yaml, r->record, "n_absolute", &m->n_absolute, r->error));
+  ABBE_TRY(read_absorption(r));
+  ABBE_TRY(read_published(r));
+  ABBE_TRY(read_density(r));
+  ABBE_TRY(read_catalogue(r));
+  return read_fits(r);
 }
 
 abbe_result abbe_material_record_read(abbe_yaml *yaml, abbe_yaml_node record,

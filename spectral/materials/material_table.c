@@ -158,10 +158,10 @@ static abbe_result read_table(abbe_yaml *yaml, const char *name, const mode *how
   t->path = strdup(name);
   if (t->path == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", name);
   abbe_yaml_get(yaml, root, "materials");
-  abbe_result result = abbe_yaml_get_string(yaml, root, "description", &t->description, error);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, root, "a material table", error);
-  if (result == ABBE_OK) result = abbe_yaml_require(yaml, root, "materials", &list, error);
-  return result == ABBE_OK ? read_records(yaml, list, how, t, error) : result;
+  ABBE_TRY(abbe_yaml_get_string(yaml, root, "description", &t->description, error));
+  ABBE_TRY(abbe_yaml_check_keys(yaml, root, "a material table", error));
+  ABBE_TRY(abbe_yaml_require(yaml, root, "materials", &list, error));
+  return read_records(yaml, list, how, t, error);
 }
 
 static abbe_result parse(const char *text, size_t size, const char *name, const mode *how,

@@ -187,8 +187,7 @@ abbe_result abbe_glass_distance_to_numbers(const abbe_material_table *table, dou
         "n_d %g and V_d %g are not those of a glass; n_d is above 1 and V_d above "
         "0, such as 1.5168 and 64.17",
         n_d, v_d);
-  abbe_result result = open_list(table, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(open_list(table, out, error));
   shape s = shape_of_cauchy();
   for (size_t i = 0; i < table->count; i++) {
     abbe_material_numbers m;
@@ -215,8 +214,7 @@ abbe_result abbe_glass_distance_to_points(const abbe_material_table *table,
   *out = (abbe_glass_distances){0};
   if (points->count == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there are no points to compare with");
-  abbe_result result = open_list(table, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(open_list(table, out, error));
   double low = points->lambda_nm[0], high = points->lambda_nm[points->count - 1];
   for (size_t i = 0; i < table->count; i++) {
     const abbe_material *m = &table->material[i];

@@ -47,10 +47,9 @@ abbe_result abbe_record_rows_read(abbe_record_reading *r, abbe_yaml_node list, c
     if (!abbe_yaml_is_sequence(r->yaml, row) || abbe_yaml_count(r->yaml, row) != columns)
       return refuse_row(r, row, key, columns);
     for (size_t k = 0; k < columns; k++) {
-      abbe_result result = abbe_yaml_number(
+      ABBE_TRY(abbe_yaml_number(
           r->yaml, abbe_yaml_item(r->yaml, row, k), key, k == 0 ? ABBE_SPECTRUM_LOW_NM : min,
-          k == 0 ? ABBE_SPECTRUM_HIGH_NM : max, &out->column[k][i], r->error);
-      if (result != ABBE_OK) return result;
+          k == 0 ? ABBE_SPECTRUM_HIGH_NM : max, &out->column[k][i], r->error));
     }
     if (i > 0 && lambda_nm[i] <= lambda_nm[i - 1])
       return abbe_yaml_fail(r->yaml, row, r->error,
@@ -88,9 +87,8 @@ abbe_result abbe_record_read_range(abbe_record_reading *r, abbe_yaml_node where,
                                    double *min_nm, double *max_nm) {
   double range[2] = {*min_nm, *max_nm};
   double low = r->lenient ? 1e-3 : ABBE_SPECTRUM_LOW_NM; /* a range in um is one to find */
-  abbe_result result =
-      abbe_yaml_get_numbers(r->yaml, where, key, 2, low, ABBE_SPECTRUM_HIGH_NM, range, r->error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(
+      abbe_yaml_get_numbers(r->yaml, where, key, 2, low, ABBE_SPECTRUM_HIGH_NM, range, r->error));
   if (range[0] >= range[1])
     return abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, where, key), r->error,
                           "'%s: [%g, %g]' must name the smaller wavelength first", key, range[0],
@@ -103,10 +101,10 @@ abbe_result abbe_record_read_range(abbe_record_reading *r, abbe_yaml_node where,
 abbe_result abbe_record_read_interpolation(abbe_record_reading *r, abbe_yaml_node where,
                                            abbe_interpolation *interpolation) {
   int choice = (int)*interpolation;
-  abbe_result result =
-      abbe_yaml_get_choice(r->yaml, where, "interpolation", interpolations, &choice, r->error);
+  ABBE_TRY(
+      abbe_yaml_get_choice(r->yaml, where, "interpolation", interpolations, &choice, r->error));
   *interpolation = (abbe_interpolation)choice;
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result read_model(abbe_record_reading *r, abbe_yaml_node where,
@@ -115,12 +113,11 @@ static abbe_result read_model(abbe_record_reading *r, abbe_yaml_node where,
   for (int i = 0; i < ABBE_DISPERSION_MODEL_COUNT; i++)
     names[i] = abbe_dispersion_model_name((abbe_dispersion_model)i);
   abbe_yaml_node node;
-  abbe_result result = abbe_yaml_require(r->yaml, where, "model", &node, r->error);
+  ABBE_TRY(abbe_yaml_require(r->yaml, where, "model", &node, r->error));
   int choice = 0;
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_choice(r->yaml, where, "model", names, &choice, r->error);
+  ABBE_TRY(abbe_yaml_get_choice(r->yaml, where, "model", names, &choice, r->error));
   *model = (abbe_dispersion_model)choice;
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result read_conductor(abbe_record_reading *r, abbe_yaml_node points) {
@@ -168,12 +165,10 @@ static abbe_result read_tabulated(abbe_record_reading *r, abbe_yaml_node own) {
 static abbe_result read_coefficients(abbe_record_reading *r, abbe_yaml_node where,
                                      abbe_dispersion *d) {
   abbe_yaml_node node;
-  abbe_result result = abbe_yaml_require(r->yaml, where, "coefficients", &node, r->error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_yaml_require(r->yaml, where, "coefficients", &node, r->error));
   double *c = NULL;
-  result = abbe_yaml_get_list(r->yaml, where, "coefficients", ABBE_DISPERSION_MAX_COEFFICIENTS, &c,
-                              &d->count, r->error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_yaml_get_list(r->yaml, where, "coefficients", ABBE_DISPERSION_MAX_COEFFICIENTS, &c,
+                              &d->count, r->error));
   memcpy(d->c, c, d->count * sizeof *c);
   free(c);
   abbe_error why;

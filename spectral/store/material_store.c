@@ -226,24 +226,18 @@ static abbe_result read_catalogue(reader *r) {
   const double most = ABBE_MATERIAL_CATALOGUE_MOST, dpgf = ABBE_MATERIAL_DPGF_MOST;
   double expansion[6] = {0}; /* the two, and their ranges */
   size_t count;
-  abbe_result result = read_text(r, ABBE_STORE_code, &c->code);
-  if (result == ABBE_OK) result = read_text(r, ABBE_STORE_status, &c->status);
-  if (result == ABBE_OK)
-    result =
-        read_number(r, ABBE_STORE_melt_frequency, 0, ABBE_MATERIAL_MELT_MOST, &c->melt_frequency);
-  if (result == ABBE_OK)
-    result =
-        read_number(r, ABBE_STORE_density_g_cm3, 0, ABBE_MATERIAL_DENSITY_MOST, &c->density_g_cm3);
-  if (result == ABBE_OK)
-    result = read_numbers(r, ABBE_STORE_expansion_per_k, 2, 6, most, expansion, &count);
+  ABBE_TRY(read_text(r, ABBE_STORE_code, &c->code));
+  ABBE_TRY(read_text(r, ABBE_STORE_status, &c->status));
+  ABBE_TRY(
+      read_number(r, ABBE_STORE_melt_frequency, 0, ABBE_MATERIAL_MELT_MOST, &c->melt_frequency));
+  ABBE_TRY(
+      read_number(r, ABBE_STORE_density_g_cm3, 0, ABBE_MATERIAL_DENSITY_MOST, &c->density_g_cm3));
+  ABBE_TRY(read_numbers(r, ABBE_STORE_expansion_per_k, 2, 6, most, expansion, &count));
   memcpy(c->expansion_per_k, expansion, sizeof c->expansion_per_k);
   memcpy(c->expansion_range_k, expansion + 2, sizeof c->expansion_range_k);
-  if (result == ABBE_OK) result = read_number(r, ABBE_STORE_dpgf, -dpgf, dpgf, &c->dpgf);
-  if (result == ABBE_OK)
-    result = read_numbers(r, ABBE_STORE_thermal, 6, 6, most, c->thermal, &count);
-  return result != ABBE_OK
-             ? result
-             : read_numbers(r, ABBE_STORE_ratings, 6, 6, most, c->ratings, &c->rating_count);
+  ABBE_TRY(read_number(r, ABBE_STORE_dpgf, -dpgf, dpgf, &c->dpgf));
+  ABBE_TRY(read_numbers(r, ABBE_STORE_thermal, 6, 6, most, c->thermal, &count));
+  return read_numbers(r, ABBE_STORE_ratings, 6, 6, most, c->ratings, &c->rating_count);
 }
 
 /* An index: its model, numbers, how its points are joined, and those. */
@@ -252,9 +246,8 @@ static abbe_result read_index(reader *r, const abbe_store_column column[4], abbe
   abbe_result result = read_word(r, column[0], model_name, ABBE_DISPERSION_MODEL_COUNT, &model);
   if (result != ABBE_OK || model < 0) return result;
   d->model = (abbe_dispersion_model)model;
-  result =
-      read_numbers(r, column[1], 1, ABBE_DISPERSION_MAX_COEFFICIENTS, INFINITY, d->c, &d->count);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(
+      read_numbers(r, column[1], 1, ABBE_DISPERSION_MAX_COEFFICIENTS, INFINITY, d->c, &d->count));
   return d->model == ABBE_DISPERSION_CONDUCTOR
              ? read_conductor(r, d)
              : read_spectrum(r, column[3], column[2], 1e-3, 1e3, &d->table);
@@ -272,11 +265,10 @@ static abbe_result read_dispersion(reader *r) {
   abbe_dispersion *const to[4] = {&m->dispersion, &m->extraordinary, &m->outer[0], &m->outer[1]};
   if (sqlite3_column_type(r->q, ABBE_STORE_model + 1) == SQLITE_NULL)
     return damaged(r, ABBE_STORE_model, "is missing");
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < 4 && result == ABBE_OK; i++) result = read_index(r, columns[i], to[i]);
+  for (int i = 0; i < 4; i++) ABBE_TRY(read_index(r, columns[i], to[i]));
   const double low = ABBE_SPECTRUM_LOW_NM, high = ABBE_SPECTRUM_HIGH_NM;
-  if (result == ABBE_OK) result = read_number(r, ABBE_STORE_from_nm, low, high, &m->min_nm);
-  return result == ABBE_OK ? read_number(r, ABBE_STORE_to_nm, low, high, &m->max_nm) : result;
+  ABBE_TRY(read_number(r, ABBE_STORE_from_nm, low, high, &m->min_nm));
+  return read_number(r, ABBE_STORE_to_nm, low, high, &m->max_nm);
 }
 
 static abbe_result read_row(reader *r) {
@@ -349,8 +341,7 @@ static abbe_result take_row(reader *r, abbe_error *error) {
 static abbe_result take_rows(reader *r, abbe_error *error) {
   int code;
   while ((code = sqlite3_step(r->q)) == SQLITE_ROW) {
-    abbe_result result = take_row(r, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(take_row(r, error));
   }
   return code == SQLITE_DONE ? ABBE_OK : abbe_store_fail(r->db, code, r->path, error);
 }
@@ -367,9 +358,8 @@ static abbe_result take_named(reader *r, abbe_error *error) {
     if (again(r->names, i)) continue;
     sqlite3_reset(r->q);
     int code = sqlite3_bind_text(r->q, 1, r->names[i], -1, SQLITE_STATIC);
-    abbe_result result =
-        code == SQLITE_OK ? take_rows(r, error) : abbe_store_fail(r->db, code, r->path, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(code == SQLITE_OK ? take_rows(r, error)
+                               : abbe_store_fail(r->db, code, r->path, error));
   }
   return ABBE_OK;
 }

@@ -46,26 +46,25 @@ static abbe_result make_materials(fill *f, abbe_error *error) {
   for (size_t i = 0; i <= ABBE_LIGHT_EXITS_BINS; i++)
     lambda_nm[i] = i < ABBE_LIGHT_EXITS_BINS ? f->desc->min_nm + (double)i * step : f->desc->max_nm;
   const abbe_geometry *g = &f->lone->geometry;
-  abbe_result result = abbe_media_make(g, lambda_nm, ABBE_LIGHT_EXITS_BINS, &f->media, error);
-  if (result == ABBE_OK)
-    result = abbe_mirrors_make(g, lambda_nm, ABBE_LIGHT_EXITS_BINS, &f->mirrors, error);
-  if (result == ABBE_OK && g->refractor_count > 0 && abbe_media_is_crystal(&f->media, 0))
-    result =
+  ABBE_TRY(abbe_media_make(g, lambda_nm, ABBE_LIGHT_EXITS_BINS, &f->media, error));
+  ABBE_TRY(abbe_mirrors_make(g, lambda_nm, ABBE_LIGHT_EXITS_BINS, &f->mirrors, error));
+  if (g->refractor_count > 0 && abbe_media_is_crystal(&f->media, 0))
+    ABBE_TRY(
         abbe_error_set(error, ABBE_UNSUPPORTED,
                        "the object '%s' is a crystal, which a ray leaves as two: take a volume "
                        "without exits",
-                       f->lone->body.name);
-  if (result == ABBE_OK && f->lone->object.medium != NULL)
-    result = abbe_error_set(error, ABBE_UNSUPPORTED,
+                       f->lone->body.name));
+  if (f->lone->object.medium != NULL)
+    ABBE_TRY(abbe_error_set(error, ABBE_UNSUPPORTED,
                             "the object '%s' scatters light, so that no ray leaves it as it came: "
                             "take a volume without rays",
-                            f->lone->body.name);
-  if (result == ABBE_OK && f->media.films.count > 0)
-    result = abbe_error_set(error, ABBE_UNSUPPORTED,
+                            f->lone->body.name));
+  if (f->media.films.count > 0)
+    ABBE_TRY(abbe_error_set(error, ABBE_UNSUPPORTED,
                             "the object '%s' has a coating, which stored rays do not see: take a "
                             "volume without rays",
-                            f->lone->body.name);
-  return result;
+                            f->lone->body.name));
+  return ABBE_OK;
 }
 
 /* Which plane each face lies in, of a convex solid of planes. */

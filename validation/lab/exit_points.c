@@ -259,8 +259,7 @@ abbe_result abbe_exit_points_make(const abbe_lone_object *lone, const abbe_body_
   uint32_t ratio[EVEN], shift[EVEN];
   double chance[ABBE_LIGHT_EXITS_BINS];
   *out = (abbe_exit_points){0};
-  abbe_result result = make_sheet(lone, &s, &out->area, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(make_sheet(lone, &s, &out->area, error));
   make_ratios(seed, ratio, shift);
   abbe_light_exits_chances(min_nm, max_nm, chance);
   out->point = calloc(count + 1, sizeof *out->point);

@@ -112,11 +112,9 @@ abbe_result abbe_lone_object_make(const abbe_scene *scene, size_t object, size_t
   out->scene.environment = NULL;
   out->scene.soft_light = NULL;
   out->scene.environment_lights = 0;
-  abbe_result result = abbe_volume_body_make(&out->object, &out->body, error);
-  if (result == ABBE_OK)
-    result = abbe_volume_body_find(&out->body, &out->object, &out->place, error);
-  if (result == ABBE_OK) result = abbe_geometry_make(&out->scene, &out->geometry, error);
-  return result;
+  ABBE_TRY(abbe_volume_body_make(&out->object, &out->body, error));
+  ABBE_TRY(abbe_volume_body_find(&out->body, &out->object, &out->place, error));
+  return abbe_geometry_make(&out->scene, &out->geometry, error);
 }
 
 void abbe_lone_object_free(abbe_lone_object *lone) {

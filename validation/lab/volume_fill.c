@@ -349,13 +349,13 @@ static abbe_result fill_exits(fill *f, abbe_error *error) {
   abbe_exit_fill_statistics done;
   abbe_weights_white(ABBE_OBSERVER_CIE_1931, &f->lone.light.illuminant, d->min_nm, d->max_nm,
                      f->volume->white);
-  const abbe_result result = abbe_exit_fill(&f->lone, &desc, f->volume, &done, error);
+  ABBE_TRY(abbe_exit_fill(&f->lone, &desc, f->volume, &done, error));
   f->statistics->photons = done.rays;
   f->statistics->carried = done.carried;
   f->statistics->alone = done.alone;
   f->statistics->sequences = done.sequences;
   f->statistics->maps = done.maps;
-  return result;
+  return ABBE_OK;
 }
 
 /* A key of all that decides what a node's values are. */

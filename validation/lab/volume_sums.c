@@ -25,9 +25,7 @@ abbe_result abbe_volume_sums_make(const abbe_volume_region *region, bool printed
                                   const float *share, const double beam[3], size_t threads,
                                   abbe_volume_sums *out, abbe_error *error) {
   *out = (abbe_volume_sums){.region = region, .printed = printed, .channels = printed ? 3 : 9};
-  abbe_result result =
-      abbe_accumulator_make(region->cells * out->channels, threads, most, &out->sums, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_accumulator_make(region->cells * out->channels, threads, most, &out->sums, error));
   out->weight = malloc(region->cells * sizeof *out->weight);
   out->piece = malloc(threads * ABBE_REGION_MOST_PIECES * sizeof *out->piece);
   if (out->weight == NULL || out->piece == NULL) {
@@ -136,8 +134,7 @@ abbe_result abbe_volume_checkpoint_save(const char *path, uint64_t key, uint64_t
   memcpy(head, magic, sizeof magic);
   memcpy(head + sizeof magic, &key, sizeof key);
   memcpy(head + sizeof magic + sizeof key, &nodes, sizeof nodes);
-  abbe_result result = abbe_file_writer_open(&writer, path, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_file_writer_open(&writer, path, error));
   uint64_t h = abbe_volume_key(ABBE_VOLUME_KEY, head, HEAD);
   fwrite(head, 1, HEAD, writer.stream); /* a short write shows in ferror */
   for (size_t i = 0; i < parts; i++) {
@@ -165,8 +162,7 @@ static abbe_result read_head(const char *path, size_t longest, abbe_error *error
   char head[sizeof magic] = "";
   size_t size = 0;
   FILE *file;
-  const abbe_result result = abbe_file_open(path, &file, &size, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_file_open(path, &file, &size, error));
   const bool is = fread(head, sizeof head, 1, file) == 1 && memcmp(head, magic, sizeof magic) == 0;
   fclose(file);
   if (!is) return broken(path, error);
@@ -225,9 +221,7 @@ abbe_result abbe_volume_keeping_begin(abbe_volume_keeping *k, size_t *node, abbe
   *node = 0;
   k->saved_s = abbe_clock_seconds();
   if (k->path == NULL || !k->resume || access(k->path, F_OK) != 0) return ABBE_OK;
-  const abbe_result result =
-      abbe_volume_checkpoint_load(k->path, k->key, &nodes, k->part, k->parts, k->stop, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_volume_checkpoint_load(k->path, k->key, &nodes, k->part, k->parts, k->stop, error));
   if (nodes > k->nodes || !k->holds(k->user, (size_t)nodes))
     return abbe_error_set(error, ABBE_PARSE, "%s is damaged: start anew without --resume", k->path);
   if (is_stopped(k->stop)) return abbe_error_set(error, ABBE_CANCELLED, "stopped");
@@ -238,8 +232,7 @@ abbe_result abbe_volume_keeping_begin(abbe_volume_keeping *k, size_t *node, abbe
 abbe_result abbe_volume_keeping_end_node(abbe_volume_keeping *k, size_t nodes, bool now,
                                          abbe_error *error) {
   if (k->path == NULL || (!now && abbe_clock_seconds() < k->saved_s + k->every_s)) return ABBE_OK;
-  const abbe_result result =
-      abbe_volume_checkpoint_save(k->path, k->key, nodes, k->part, k->parts, error);
+  ABBE_TRY(abbe_volume_checkpoint_save(k->path, k->key, nodes, k->part, k->parts, error));
   k->saved_s = abbe_clock_seconds();
-  return result;
+  return ABBE_OK;
 }

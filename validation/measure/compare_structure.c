@@ -178,8 +178,7 @@ static abbe_result measure(const abbe_compare_state *s, abbe_compare_sides who, 
                                                 ABBE_COMPARE_HDR_FLIP_MEAN};
   fill(s, who, of);
   for (size_t m = 0; m < sizeof metrics / sizeof *metrics; m++) {
-    abbe_result result = make_map(s, metrics[m], of, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(make_map(s, metrics[m], of, error));
     take_mean(s, metrics[m], who, of->map, NULL, &s->out->whole);
     if (s->out->masked) take_mean(s, metrics[m], who, of->map, s->options->mask, &s->out->mask);
   }

@@ -50,8 +50,7 @@ static double round_up(double value) {
 abbe_result abbe_difference_picture_range(const abbe_field *reference, const abbe_field *test,
                                           double scale, double *range, abbe_error *error) {
   *range = 0;
-  abbe_result result = check(reference, test, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check(reference, test, error));
   size_t pixels = reference->width * reference->height, count = 0;
   float *sizes = malloc(pixels * sizeof *sizes);
   if (sizes == NULL)

@@ -300,11 +300,10 @@ static abbe_result take_bands(const abbe_image *image, const char *name, abbe_fi
 /* The whole */
 
 static abbe_result copy_attributes(const abbe_image *image, abbe_field *f, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < image->attribute_count && result == ABBE_OK; i++)
-    result = abbe_image_set_attribute(&f->header, image->attribute[i].name,
-                                      image->attribute[i].text, error);
-  return result;
+  for (size_t i = 0; i < image->attribute_count; i++)
+    ABBE_TRY(abbe_image_set_attribute(&f->header, image->attribute[i].name,
+                                      image->attribute[i].text, error));
+  return ABBE_OK;
 }
 
 static abbe_field_kind find_kind(const abbe_image *image) {
@@ -330,15 +329,15 @@ static abbe_result fill(const abbe_image *image, const char *name, abbe_field *f
   f->passes = find_passes(image);
   f->header.display_window = image->display_window;
   memcpy(f->header.part, image->part, sizeof f->header.part);
-  abbe_result result = copy_attributes(image, f, error);
-  if (result == ABBE_OK) result = take_colour(image, name, f, error);
-  if (result == ABBE_OK) result = take_bands(image, name, f, error);
-  if (result == ABBE_OK && f->colour.channels == 0 && f->bands.channels == 0)
-    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+  ABBE_TRY(copy_attributes(image, f, error));
+  ABBE_TRY(take_colour(image, name, f, error));
+  ABBE_TRY(take_bands(image, name, f, error));
+  if (f->colour.channels == 0 && f->bands.channels == 0)
+    ABBE_TRY(abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "%s: it has no channels R, G, B, nor X, Y, Z, nor bands such as "
                             "S0.550,000000nm; its first channel is '%s'",
-                            name, image->channel[0]);
-  return result;
+                            name, image->channel[0]));
+  return ABBE_OK;
 }
 
 abbe_result abbe_field_make(const abbe_image *image, const char *name, abbe_field *out,

@@ -68,9 +68,9 @@ abbe_result abbe_mask_make_brightest(const double *light, size_t count, double s
   if (t.inside == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "there is no light to find a mask by: all %zu pixels are dark", count);
-  abbe_result result = make_empty(count, out, error);
-  if (result == ABBE_OK) fill(light, t, out);
-  return result;
+  ABBE_TRY(make_empty(count, out, error));
+  fill(light, t, out);
+  return ABBE_OK;
 }
 
 static double caustic_light(const abbe_field *f, size_t pixel) {
@@ -129,8 +129,7 @@ abbe_result abbe_mask_make_drawn(const abbe_image *image, abbe_mask *out, abbe_e
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the picture of a mask is empty");
   size_t channel = drawn_channel(image);
   abbe_mask mask = {0};
-  abbe_result result = make_empty(image->width * image->height, &mask, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(make_empty(image->width * image->height, &mask, error));
   for (size_t i = 0; i < mask.count; i++) {
     mask.in[i] = image->data[i * image->channels + channel] > 0.5f;
     mask.inside += mask.in[i];

@@ -22,9 +22,7 @@ static abbe_result add_batch(abbe_renderer *renderer, size_t light, size_t first
                              abbe_error *error) {
   const size_t wavelengths = abbe_renderer_plan(renderer)->desc.wavelengths;
   abbe_renderer_hits hits;
-  abbe_result result =
-      abbe_renderer_read_hits(renderer, light, first, goes_on, (void *)stop, &hits, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_renderer_read_hits(renderer, light, first, goes_on, (void *)stop, &hits, error));
   const bool last = first + hits.samples >= wavelengths;
   const abbe_view_hits batch = {.at = hits.at,
                                 .path = hits.path,
@@ -36,7 +34,7 @@ static abbe_result add_batch(abbe_renderer *renderer, size_t light, size_t first
                                 .last = last || alone,
                                 .stop = stop,
                                 .view = hits.view};
-  result = abbe_view_feed_add(feed, &batch, error);
+  abbe_result result = abbe_view_feed_add(feed, &batch, error);
   *next = last || hits.samples < 2 ? first + hits.samples : first + hits.samples - 1;
   abbe_renderer_hits_free(&hits);
   return result;

@@ -179,9 +179,8 @@ static abbe_result show_rows(const abbe_image *from, const size_t channel[3], do
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < 3; k++)
       rows->data[3 * i + k] = (float)(gain * (double)data[from->channels * i + channel[k]]);
-  const abbe_result result = table != NULL ? abbe_display_table_apply(table, rows, error)
-                                           : abbe_display_apply(display, rows, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(table != NULL ? abbe_display_table_apply(table, rows, error)
+                         : abbe_display_apply(display, rows, error));
   for (size_t i = 0; i < count; i++) {
     for (size_t k = 0; k < 3; k++)
       out[4 * (before + i) + k] = byte_of((double)rows->data[3 * i + k]);

@@ -151,8 +151,7 @@ void abbe_view_history_free(abbe_view_history *history) {
 abbe_result abbe_view_history_begin(abbe_view_history *history, const abbe_view_document *document,
                                     abbe_error *error) {
   abbe_view_document first;
-  abbe_result result = abbe_view_document_copy(document, &first, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_view_document_copy(document, &first, error));
   abbe_view_history_free(history);
   history->entry[0] = first;
   history->count = 1;
@@ -168,8 +167,7 @@ abbe_result abbe_view_history_edit(abbe_view_history *history, bool continued,
   abbe_view_document next;
   *out = &history->entry[history->at];
   if (continued && history->at + 1 == history->count && history->at > 0) return ABBE_OK;
-  abbe_result result = abbe_view_document_copy(&history->entry[history->at], &next, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_view_document_copy(&history->entry[history->at], &next, error));
   drop(history, history->at + 1, history->count - history->at - 1);
   if (history->count == ABBE_VIEW_MOST_STEPS) drop(history, 0, 1);
   history->entry[history->count] = next;

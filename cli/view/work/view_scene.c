@@ -116,9 +116,8 @@ static abbe_result relight(abbe_view_scene *s, const abbe_view_document *d,
   const char *set[ABBE_VIEW_MOST_CHANGES];
   const abbe_scene_options options = options_of(s, d, set);
   abbe_view_document kept;
-  abbe_result result = abbe_view_document_copy(d, &kept, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_scene_load_lights(d->path, &options, s->now, error);
+  ABBE_TRY(abbe_view_document_copy(d, &kept, error));
+  abbe_result result = abbe_scene_load_lights(d->path, &options, s->now, error);
   if (result != ABBE_OK) {
     abbe_view_document_free(&kept);
     return result;

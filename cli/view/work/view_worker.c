@@ -206,14 +206,13 @@ static abbe_result change(abbe_view_worker *w, const abbe_render_desc *desc,
 static abbe_result draw(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
                         abbe_error *error) {
   const bool moving = q->job.stage == ABBE_VIEW_MOVING;
-  abbe_result result = find_front(w, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(find_front(w, error));
   const abbe_render_desc desc = request_of(w, q);
   /* What moves is drawn in one go, for no change cancels it, and parts that are waited for take
    * longer, and other code of the driver's; so also for programs' sake. But whoever closes the
    * window does not wait for the compiler. */
   const bool made = w->renderer != NULL && !q->job.warms;
-  result = change(w, &desc, moving && made ? NULL : goes_on, error);
+  abbe_result result = change(w, &desc, moving && made ? NULL : goes_on, error);
   if (result == ABBE_OK)
     result = abbe_renderer_frame(w->renderer, moving ? NULL : goes_on, w,
                                  moving ? NULL : &out->statistics, error);
@@ -237,8 +236,7 @@ static abbe_result draw_mean(abbe_view_worker *w, const abbe_view_request *q, ab
   const abbe_error_bars_desc desc = {.of_mean = true, .aovs = true, .progress = goes_on, .user = w};
   abbe_view_request before = *q;
   before.job.stage = ABBE_VIEW_ACCURATE;
-  const abbe_result result = draw(w, &before, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(draw(w, &before, out, error));
   return abbe_error_bars_make(w->context, w->scene.now, w->renderer, &desc, &out->bars, error);
 }
 
@@ -330,8 +328,7 @@ static void begin_result(const abbe_view_request *q, abbe_view_result *out) {
 static abbe_result make(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
                         abbe_error *error) {
   if (q->asks || q->maps) return look(w, q, out, error);
-  const abbe_result result = take_scene(w, q, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(take_scene(w, q, out, error));
   if (q->tells)
     return abbe_view_spot_trace(w->scene.now, q->width, q->height, q->pixel, spot_s, &w->stop,
                                 &out->spot, error);

@@ -135,6 +135,6 @@ static abbe_result refract_eye(abbe_image_eye *e, abbe_error *error) {
 
 abbe_result abbe_image_eye_run(abbe_image_eye *e, GLuint caustic_map, abbe_error *error) {
   abbe_gpu_scene_bind(e->scene);
-  abbe_result result = light_receivers(e, caustic_map, error);
-  return result == ABBE_OK ? refract_eye(e, error) : result;
+  ABBE_TRY(light_receivers(e, caustic_map, error));
+  return refract_eye(e, error);
 }

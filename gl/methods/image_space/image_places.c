@@ -113,8 +113,8 @@ abbe_result abbe_image_places_make(const abbe_gpu_scene *scene, const abbe_image
     out->grid[k] = grid[k];
   }
   if (counts) scene->gpu->gl->GenQueries(1, &out->query);
-  abbe_result result = make_targets(out, error);
-  return result == ABBE_OK ? make_programs(out, error) : result;
+  ABBE_TRY(make_targets(out, error));
+  return make_programs(out, error);
 }
 
 void abbe_image_places_free(abbe_image_places *p) {
@@ -137,9 +137,8 @@ static void set_faces(const abbe_image_places *p, GLuint program) {
 abbe_result abbe_image_places_receivers(abbe_image_places *p, abbe_error *error) {
   const abbe_gl *gl = p->scene->gpu->gl;
   const abbe_plan *plan = p->scene->plan;
-  abbe_result result = abbe_gpu_set_target(p->scene->gpu, &p->receivers, &all_of_it, 1, p->depth,
-                                           p->size[0], p->size[1], error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_set_target(p->scene->gpu, &p->receivers, &all_of_it, 1, p->depth, p->size[0],
+                               p->size[1], error));
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &far_away);
   gl->Enable(GL_DEPTH_TEST);
@@ -153,9 +152,8 @@ abbe_result abbe_image_places_receivers(abbe_image_places *p, abbe_error *error)
 abbe_result abbe_image_places_shadow(abbe_image_places *p, abbe_error *error) {
   const abbe_gl *gl = p->scene->gpu->gl;
   const abbe_plan *plan = p->scene->plan;
-  abbe_result result =
-      abbe_gpu_set_target(p->scene->gpu, NULL, NULL, 0, p->depth, p->size[0], p->size[1], error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(
+      abbe_gpu_set_target(p->scene->gpu, NULL, NULL, 0, p->depth, p->size[0], p->size[1], error));
   gl->Enable(GL_DEPTH_TEST);
   gl->UseProgram(p->depth_only);
   set_faces(p, p->depth_only);
@@ -205,9 +203,8 @@ abbe_result abbe_image_places_objects(abbe_image_places *p, abbe_error *error) {
   const abbe_view *view = &p->view.view;
   const GLuint colour[2] = {p->places, p->normals};
   const double *from = view->orthographic ? view->forward : view->origin;
-  abbe_result result =
-      abbe_gpu_set_target(p->scene->gpu, colour, all, 2, p->depths, p->grid[0], p->grid[1], error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(
+      abbe_gpu_set_target(p->scene->gpu, colour, all, 2, p->depths, p->grid[0], p->grid[1], error));
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   gl->ClearBufferfv(GL_COLOR, 1, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &far_away);

@@ -174,8 +174,7 @@ void abbe_image_view_set_units(const abbe_gpu_scene *scene, GLuint program,
 abbe_result abbe_image_view_draw_screen(const abbe_gpu_scene *scene, GLuint target, int layer,
                                         size_t width, size_t height, abbe_error *error) {
   const abbe_gl *gl = scene->gpu->gl;
-  abbe_result result = abbe_gpu_set_target(scene->gpu, &target, &layer, 1, 0, width, height, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_set_target(scene->gpu, &target, &layer, 1, 0, width, height, error));
   gl->Disable(GL_DEPTH_TEST);
   abbe_gpu_draw_screen(scene->gpu);
   return ABBE_OK;
@@ -187,9 +186,7 @@ abbe_result abbe_image_view_read(const abbe_gpu_scene *scene, GLuint picture, ab
   const abbe_gl *gl = scene->gpu->gl;
   const abbe_render_desc *desc = &scene->plan->desc;
   const bool as_xyz = in_units(scene) && desc->space == ABBE_RGB_SPACE_XYZ;
-  abbe_result result =
-      abbe_image_make(desc->width, desc->height, 3, as_xyz ? xyz : rgb, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_image_make(desc->width, desc->height, 3, as_xyz ? xyz : rgb, out, error));
   float *data = malloc(out->width * out->height * 4 * sizeof *data);
   if (data == NULL) {
     abbe_image_free(out);

@@ -195,8 +195,8 @@ abbe_result abbe_page_charts_make(const abbe_gpu_scene *scene, size_t side, abbe
   *out = (abbe_page_charts){0};
   if (!find_closed(scene, out))
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for charts");
-  abbe_result result = upload_places(scene, side, out, error);
-  return result == ABBE_OK ? upload_charts(scene, out, error) : result;
+  ABBE_TRY(upload_places(scene, side, out, error));
+  return upload_charts(scene, out, error);
 }
 
 void abbe_page_charts_free(abbe_gpu *gpu, abbe_page_charts *charts) {
@@ -274,9 +274,8 @@ static abbe_result make_programs(abbe_pinhole_pages *pages, const abbe_shader_va
   if (plan->page_charts)
     snprintf(places, sizeof places, "#define PINHOLE_CHARTS\n#define RECEIVERS %zu\n",
              plan->parallelogram_count);
-  abbe_result result =
-      abbe_gpu_compute(pages->scene->gpu, "pinhole_select.comp", places, &pages->select, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(
+      abbe_gpu_compute(pages->scene->gpu, "pinhole_select.comp", places, &pages->select, error));
   return abbe_shader_variant_compute(
       &follows, pages->scene->gpu, "pinhole_pages.comp",
       plan->desc.footprint == ABBE_FOOTPRINT_ON ? "#define FOOTPRINTS\n" : NULL, &pages->fill,
@@ -414,10 +413,10 @@ static abbe_result fill_pages(abbe_pinhole_pages *pages, abbe_error *error) {
 static abbe_result clear(abbe_pinhole_pages *pages, abbe_error *error) {
   static const int all = -1;
   static const GLfloat nothing[4] = {0, 0, 0, 0};
-  abbe_result result = abbe_gpu_set_target(pages->scene->gpu, &pages->texture, &all, 1, 0,
-                                           pages->side, pages->side, error);
-  if (result == ABBE_OK) pages->scene->gpu->gl->ClearBufferfv(GL_COLOR, 0, nothing);
-  return result;
+  ABBE_TRY(abbe_gpu_set_target(pages->scene->gpu, &pages->texture, &all, 1, 0, pages->side,
+                               pages->side, error));
+  pages->scene->gpu->gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  return ABBE_OK;
 }
 
 /* What both programs read, into that which is in use. */
@@ -452,10 +451,9 @@ static void begin(abbe_pinhole_pages *pages) {
 abbe_result abbe_pinhole_pages_run(abbe_pinhole_pages *pages, abbe_error *error) {
   if (pages->scene == NULL || pages->filled) return ABBE_OK;
   abbe_gpu_start_lap(pages->scene->gpu);
-  abbe_result result = clear(pages, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(clear(pages, error));
   begin(pages);
-  result = fill_pages(pages, error);
+  abbe_result result = fill_pages(pages, error);
   pages->filled = result == ABBE_OK && !pages->scene->gpu->stopped;
   pages->scene->gpu->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   abbe_gpu_book_lap(pages->scene->gpu, ABBE_PASS_PINHOLES);

@@ -77,12 +77,10 @@ static abbe_result make_programs(abbe_shah2007 *s, const abbe_shader_variant *va
                                      search, false},
                                     {d->low_pass > 0 ? &s->low_pass : NULL, "screen.vert", NULL,
                                      "shah_low_pass.frag", cube, true}};
-  abbe_result result = abbe_image_programs_make(variant, s->base.scene->gpu, all, 2, error);
-  if (result == ABBE_OK) result = abbe_image_tables_colours(s->base.scene, true, &shares, error);
-  if (result == ABBE_OK)
-    result = abbe_image_eye_make(s->base.scene, &s->base.light, variant, more, shares, &s->base.eye,
-                                 error);
-  return result;
+  ABBE_TRY(abbe_image_programs_make(variant, s->base.scene->gpu, all, 2, error));
+  ABBE_TRY(abbe_image_tables_colours(s->base.scene, true, &shares, error));
+  return abbe_image_eye_make(s->base.scene, &s->base.light, variant, more, shares, &s->base.eye,
+                             error);
 }
 
 /* Texels that a face shares with its neighbours at each edge: what splats and the low pass lay
@@ -118,14 +116,13 @@ static abbe_result make(abbe_method *m, const abbe_shader_variant *variant, abbe
   const abbe_render_desc *d = &scene->plan->desc;
   const size_t map[2] = {d->map_size, d->map_size}, grid[2] = {d->photons, d->photons};
   abbe_image_cube sight;
-  abbe_result result = look_from_light(scene, &sight, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(look_from_light(scene, &sight, error));
   const size_t layers = sight.faces > 1 ? sight.faces : 0;
   const abbe_image_texture all[] = {
       {&s->map, GL_RGBA32F, map[0], map[1], layers, true},
       {d->low_pass > 0 ? &s->smoothed : NULL, GL_RGBA32F, map[0], map[1], layers, true}};
   abbe_map_layout_make(&sight.face[0], &m->layout);
-  result = abbe_image_places_make(scene, &sight, map, grid, true, &m->light, error);
+  abbe_result result = abbe_image_places_make(scene, &sight, map, grid, true, &m->light, error);
   if (result == ABBE_OK) result = abbe_image_textures_make(scene->gpu, all, 2, error);
   if (result == ABBE_OK) result = abbe_image_tables_colours(scene, false, &m->colour, error);
   if (result == ABBE_OK) result = make_programs(s, variant, error);
@@ -163,9 +160,7 @@ static abbe_result splat_vertices(abbe_shah2007 *s, abbe_error *error) {
   const abbe_gl *gl = scene->gpu->gl;
   const abbe_render_desc *d = &scene->plan->desc;
   abbe_gpu_start_lap(scene->gpu);
-  abbe_result result =
-      abbe_gpu_set_target(scene->gpu, &s->map, &flat, 1, 0, d->map_size, d->map_size, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_set_target(scene->gpu, &s->map, &flat, 1, 0, d->map_size, d->map_size, error));
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   gl->Disable(GL_DEPTH_TEST);
   gl->Enable(GL_BLEND);
@@ -204,22 +199,21 @@ static abbe_result smooth_face(abbe_shah2007 *s, int face, abbe_error *error) {
 }
 
 static abbe_result smooth_map(abbe_shah2007 *s, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (size_t f = 0; f < s->base.light.faces && s->low_pass != 0 && result == ABBE_OK; f++)
-    result = smooth_face(s, around(s) ? (int)f : -1, error);
-  return result;
+  for (size_t f = 0; f < s->base.light.faces && s->low_pass != 0; f++)
+    ABBE_TRY(smooth_face(s, around(s) ? (int)f : -1, error));
+  return ABBE_OK;
 }
 
 static abbe_result draw_map(abbe_shah2007 *s, abbe_error *error) {
-  abbe_result result = abbe_method_see_from_light(&s->base, error);
-  if (result == ABBE_OK) result = splat_vertices(s, error);
-  return result == ABBE_OK ? smooth_map(s, error) : result;
+  ABBE_TRY(abbe_method_see_from_light(&s->base, error));
+  ABBE_TRY(splat_vertices(s, error));
+  return smooth_map(s, error);
 }
 
 static abbe_result run(abbe_method *m, bool lit, abbe_error *error) {
   abbe_shah2007 *s = (abbe_shah2007 *)m;
-  abbe_result result = lit ? ABBE_OK : draw_map(s, error);
-  return result == ABBE_OK ? abbe_image_eye_run(&m->eye, s->map, error) : result;
+  ABBE_TRY(lit ? ABBE_OK : draw_map(s, error));
+  return abbe_image_eye_run(&m->eye, s->map, error);
 }
 
 static bool keeps_light(const abbe_render_desc *desc) {

@@ -135,12 +135,10 @@ static abbe_result make(abbe_method *m, const abbe_shader_variant *variant, abbe
   abbe_camera_view_fit(scene->local, &scene->plan->desc, &t->camera);
   abbe_image_view_make(&t->base.layout.view, &t->light);
   abbe_image_view_make(&t->camera.view, &t->eye);
-  abbe_result result =
-      abbe_photon_cells_make(scene->gpu, scene->plan->desc.photons, &t->cells, error);
-  if (result == ABBE_OK) result = make_tables(t, error);
-  if (result == ABBE_OK) result = make_targets(t, error);
-  if (result == ABBE_OK) result = make_programs(t, variant, error);
-  return result;
+  ABBE_TRY(abbe_photon_cells_make(scene->gpu, scene->plan->desc.photons, &t->cells, error));
+  ABBE_TRY(make_tables(t, error));
+  ABBE_TRY(make_targets(t, error));
+  return make_programs(t, variant, error);
 }
 
 static void set_planes(abbe_thesis *t, GLuint program, const abbe_view *view) {
@@ -167,9 +165,8 @@ static abbe_result draw_layers(abbe_thesis *t, GLuint normals, GLuint depths, si
                                abbe_error *error) {
   static const int all = -1;
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
-  abbe_result result =
-      abbe_gpu_set_target(t->base.scene->gpu, &normals, &all, 1, depths, width, height, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(
+      abbe_gpu_set_target(t->base.scene->gpu, &normals, &all, 1, depths, width, height, error));
   t->base.scene->gpu->gl->ClearBufferfv(GL_COLOR, 0, nothing);
   t->base.scene->gpu->gl->ClearBufferfv(GL_DEPTH, 0, &far);
   t->base.scene->gpu->gl->UseProgram(t->layers);
@@ -187,9 +184,8 @@ static abbe_result light_passes(abbe_thesis *t, abbe_error *error) {
   double matrix[16];
   gl->Enable(GL_DEPTH_TEST);
   abbe_gpu_start_lap(t->base.scene->gpu);
-  abbe_result result = abbe_gpu_set_target(t->base.scene->gpu, NULL, NULL, 0,
-                                           t->light_receiver_depth, map, map, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_set_target(t->base.scene->gpu, NULL, NULL, 0, t->light_receiver_depth, map, map,
+                               error));
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
   gl->UseProgram(t->depth_only);
   abbe_transform_multiply(t->light.clip, t->light.look, matrix);
@@ -197,8 +193,8 @@ static abbe_result light_passes(abbe_thesis *t, abbe_error *error) {
   for (size_t i = 0; i < t->base.scene->plan->receiver_count; i++)
     abbe_gpu_meshes_draw(t->base.scene, t->base.scene->plan->receiver_object[i]);
   abbe_gpu_book_lap(t->base.scene->gpu, ABBE_PASS_RECEIVER_DEPTH);
-  result = draw_layers(t, t->light_normals, t->light_depths, map, map, t->light.look, t->light.clip,
-                       error);
+  abbe_result result = draw_layers(t, t->light_normals, t->light_depths, map, map, t->light.look,
+                                   t->light.clip, error);
   abbe_gpu_book_lap(t->base.scene->gpu, ABBE_PASS_LIGHT_FRONT_AND_BACK);
   return result;
 }
@@ -259,10 +255,9 @@ static abbe_result light_receivers(abbe_thesis *t, abbe_error *error) {
   static const GLfloat far = 1;
   double matrix[16];
   abbe_gpu_start_lap(t->base.scene->gpu);
-  abbe_result result =
-      abbe_gpu_set_target(t->base.scene->gpu, &t->eye_receivers, &flat, 1, t->eye_receiver_depth,
-                          t->base.scene->plan->desc.width, t->base.scene->plan->desc.height, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_set_target(t->base.scene->gpu, &t->eye_receivers, &flat, 1,
+                               t->eye_receiver_depth, t->base.scene->plan->desc.width,
+                               t->base.scene->plan->desc.height, error));
   const GLfloat sky = t->cie ? (float)t->base.scene->local->background : 0;
   const GLfloat background[4] = {sky, sky, sky, 0};
   gl->ClearBufferfv(GL_COLOR, 0, background);

@@ -90,9 +90,8 @@ static abbe_result light_pages(const abbe_volume_pages *v, const abbe_volume_pla
                                      .min_nm = plan->desc.min_nm,
                                      .max_nm = plan->desc.max_nm};
   abbe_exit_pages pages;
-  abbe_result result = abbe_exit_pages_make(
-      plan->desc.volume, &desc, all, plan->parallelogram_count, side_of(plan), &pages, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_exit_pages_make(plan->desc.volume, &desc, all, plan->parallelogram_count,
+                                side_of(plan), &pages, error));
   const bool handed = hand_over(v, light, &pages);
   abbe_exit_pages_free(&pages);
   if (!handed) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for pages");

@@ -44,13 +44,11 @@ static abbe_result make(abbe_method *m, const abbe_shader_variant *variant, abbe
       {&w->mirrors, "surface.vert", NULL, "wand_mirrors.frag", more, false}};
   abbe_camera_view_fit(scene->local, d, &w->camera);
   abbe_image_view_make(&w->camera.view, &w->view);
-  abbe_result result = abbe_pinhole_samples_make(scene, true, &w->samples, error);
-  if (result == ABBE_OK)
-    result = abbe_pinhole_sky_make(scene, &scene->local->environment->map, CUBE, &w->sky, error);
-  if (result == ABBE_OK) result = abbe_pinhole_samples_colours(scene, &w->colour, error);
-  if (result == ABBE_OK) result = abbe_image_textures_make(scene->gpu, textures, 2, error);
-  return result == ABBE_OK ? abbe_image_programs_make(variant, scene->gpu, programs, 4, error)
-                           : result;
+  ABBE_TRY(abbe_pinhole_samples_make(scene, true, &w->samples, error));
+  ABBE_TRY(abbe_pinhole_sky_make(scene, &scene->local->environment->map, CUBE, &w->sky, error));
+  ABBE_TRY(abbe_pinhole_samples_colours(scene, &w->colour, error));
+  ABBE_TRY(abbe_image_textures_make(scene->gpu, textures, 2, error));
+  return abbe_image_programs_make(variant, scene->gpu, programs, 4, error);
 }
 
 static void free_own(abbe_method *m) {
@@ -131,9 +129,8 @@ static abbe_result run(abbe_method *m, bool lit, abbe_error *error) {
   const abbe_gl *gl = w->base.scene->gpu->gl;
   const abbe_render_desc *d = &w->base.scene->plan->desc;
   abbe_gpu_start_lap(w->base.scene->gpu);
-  abbe_result result = abbe_gpu_set_target(w->base.scene->gpu, &w->base.picture, &flat, 1, w->depth,
-                                           d->width, d->height, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_set_target(w->base.scene->gpu, &w->base.picture, &flat, 1, w->depth, d->width,
+                               d->height, error));
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &far_away);
   gl->Disable(GL_DEPTH_TEST);
@@ -145,7 +142,7 @@ static abbe_result run(abbe_method *m, bool lit, abbe_error *error) {
   abbe_gpu_book_lap(w->base.scene->gpu, ABBE_PASS_EYE_RECEIVERS);
   draw_mirrors(w);
   abbe_gpu_book_lap(w->base.scene->gpu, ABBE_PASS_EYE_REFRACTION);
-  result = add_pinholes(w, error);
+  abbe_result result = add_pinholes(w, error);
   abbe_gpu_book_lap(w->base.scene->gpu, ABBE_PASS_PINHOLES);
   gl->Disable(GL_DEPTH_TEST);
   return result;

@@ -82,11 +82,9 @@ static abbe_result make_eye(abbe_wyman2006 *w, const abbe_shader_variant *varian
                                   : "");
   if (length < 0 || (size_t)length >= sizeof more)
     return abbe_error_set(error, ABBE_GL, "a shader's definitions are too long");
-  abbe_result result = abbe_image_tables_colours(w->base.scene, true, &shares, error);
-  if (result == ABBE_OK)
-    result = abbe_image_eye_make(w->base.scene, &w->base.light, variant, more, shares, &w->base.eye,
-                                 error);
-  return result;
+  ABBE_TRY(abbe_image_tables_colours(w->base.scene, true, &shares, error));
+  return abbe_image_eye_make(w->base.scene, &w->base.light, variant, more, shares, &w->base.eye,
+                             error);
 }
 
 /* Places between those that are seen: else photons of a texel land on a shell around the light, and
@@ -113,18 +111,18 @@ static abbe_result make(abbe_method *m, const abbe_shader_variant *variant, abbe
   abbe_image_tables_define(d, definitions, sizeof definitions);
   look_from_light(scene, &sight);
   abbe_map_layout_make(&sight.face[0], &m->layout);
-  abbe_result result = abbe_image_places_make(scene, &sight, map, grid, true, &m->light, error);
-  if (result == ABBE_OK) interpolate_receivers(&m->light);
-  if (result == ABBE_OK)
-    result = abbe_wyman_photons_make(scene, &m->light, variant, definitions, &w->photons, error);
-  if (result == ABBE_OK) result = abbe_image_tables_colours(scene, false, &m->colour, error);
-  if (result == ABBE_OK) result = make_eye(w, variant, definitions, error);
-  if (result == ABBE_OK && sight.faces == 1)
-    result = abbe_wyman_target_make(&w->photons, &m->light, false, variant, &w->map, error);
-  if (result == ABBE_OK && in_camera(scene))
-    result = abbe_wyman_target_make(&w->photons, &m->eye.places, true, variant, &w->picture, error);
+  ABBE_TRY(abbe_image_places_make(scene, &sight, map, grid, true, &m->light, error));
+  interpolate_receivers(&m->light);
+  ABBE_TRY(abbe_wyman_photons_make(scene, &m->light, variant, definitions, &w->photons, error));
+  ABBE_TRY(abbe_image_tables_colours(scene, false, &m->colour, error));
+  ABBE_TRY(make_eye(w, variant, definitions, error));
+  if (sight.faces == 1)
+    ABBE_TRY(abbe_wyman_target_make(&w->photons, &m->light, false, variant, &w->map, error));
+  if (in_camera(scene))
+    ABBE_TRY(
+        abbe_wyman_target_make(&w->photons, &m->eye.places, true, variant, &w->picture, error));
   m->history = &own_target(w)->history;
-  return result;
+  return ABBE_OK;
 }
 
 static void free_own(abbe_method *m) {

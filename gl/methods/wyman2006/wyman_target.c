@@ -50,11 +50,9 @@ abbe_result abbe_wyman_photons_make(const abbe_gpu_scene *scene, const abbe_imag
       abbe_method_of(scene->plan->desc.profile)->printed ? GL_RGBA16F : GL_RGBA32F;
   *out = (abbe_wyman_photons){.scene = scene, .light = light};
   find_background(scene, out->background);
-  abbe_result result =
-      abbe_gpu_make_texture(scene->gpu, format, side, side, 0, false, &out->places, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_texture(scene->gpu, format, side, side, 0, false, &out->incident, error);
-  return result == ABBE_OK ? make_program(out, variant, definitions, error) : result;
+  ABBE_TRY(abbe_gpu_make_texture(scene->gpu, format, side, side, 0, false, &out->places, error));
+  ABBE_TRY(abbe_gpu_make_texture(scene->gpu, format, side, side, 0, false, &out->incident, error));
+  return make_program(out, variant, definitions, error);
 }
 
 void abbe_wyman_photons_free(abbe_wyman_photons *p) {
@@ -71,8 +69,7 @@ abbe_result abbe_wyman_photons_run(const abbe_wyman_photons *p, size_t wavelengt
   const abbe_gl *gl = scene->gpu->gl;
   const size_t side = scene->plan->desc.photons;
   const GLuint targets[2] = {p->places, p->incident};
-  abbe_result result = abbe_gpu_set_target(scene->gpu, targets, flat, 2, 0, side, side, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_set_target(scene->gpu, targets, flat, 2, 0, side, side, error));
   gl->Disable(GL_DEPTH_TEST);
   gl->UseProgram(p->program);
   abbe_gpu_scene_set(scene, p->program);
@@ -163,8 +160,8 @@ abbe_result abbe_wyman_target_make(const abbe_wyman_photons *photons,
       .polygons = d->fill == ABBE_FILL_QUADS || d->fill == ABBE_FILL_TRIANGLES,
       .gathers = d->fill == ABBE_FILL_GATHER_EYE || d->fill == ABBE_FILL_GATHER_LIGHT};
   if (out->polygons) photons->scene->gpu->gl->GenQueries(1, &out->query);
-  abbe_result result = make_targets(out, error);
-  return result == ABBE_OK ? make_programs(out, variant, error) : result;
+  ABBE_TRY(make_targets(out, error));
+  return make_programs(out, variant, error);
 }
 
 void abbe_wyman_target_free(abbe_wyman_target *t) {
@@ -233,9 +230,8 @@ static abbe_result draw(abbe_wyman_target *t, const float colour[3], bool first,
   const abbe_gl *gl = scene->gpu->gl;
   const size_t side = scene->plan->desc.photons, cells = (side - 1) * (side - 1);
   const GLuint targets[2] = {t->sum, t->direction_sum};
-  abbe_result result = abbe_gpu_set_target(scene->gpu, targets, flat, t->directions ? 2 : 1, 0,
-                                           t->places->size[0], t->places->size[1], error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_set_target(scene->gpu, targets, flat, t->directions ? 2 : 1, 0,
+                               t->places->size[0], t->places->size[1], error));
   for (int i = 0; first && i <= t->directions; i++) gl->ClearBufferfv(GL_COLOR, i, nothing);
   gl->Disable(GL_DEPTH_TEST);
   gl->Enable(GL_BLEND);
@@ -260,9 +256,8 @@ static abbe_result draw(abbe_wyman_target *t, const float colour[3], bool first,
 static abbe_result draw_over(const abbe_wyman_target *t, const GLuint target[2],
                              abbe_error *error) {
   const abbe_gl *gl = t->scene->gpu->gl;
-  abbe_result result = abbe_gpu_set_target(t->scene->gpu, target, flat, target[1] != 0 ? 2 : 1, 0,
-                                           t->places->size[0], t->places->size[1], error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_set_target(t->scene->gpu, target, flat, target[1] != 0 ? 2 : 1, 0,
+                               t->places->size[0], t->places->size[1], error));
   gl->Disable(GL_DEPTH_TEST);
   abbe_gpu_draw_screen(t->scene->gpu);
   return ABBE_OK;
@@ -301,11 +296,10 @@ static abbe_result gather(abbe_wyman_target *t, abbe_error *error) {
   abbe_gpu *gpu = t->scene->gpu;
   gpu->gl->UseProgram(t->area);
   abbe_gpu_bind_texture(gpu, t->area, "drawn_places", 0, t->places->receivers);
-  abbe_result result = draw_over(t, areas, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(draw_over(t, areas, error));
   bind_sums(t, t->gather);
   abbe_gpu_bind_texture(gpu, t->gather, "areas", 2, t->areas);
-  result = draw_over(t, t->gathered, error);
+  abbe_result result = draw_over(t, t->gathered, error);
   t->light = t->gathered[0];
   t->light_directions = t->gathered[1];
   return result;

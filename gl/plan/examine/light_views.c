@@ -211,9 +211,7 @@ static abbe_result make_cube(const abbe_scene *scene, size_t light, abbe_plan *p
   for (size_t k = 0; k < plan->refractor_count; k++) {
     const unsigned faces = abbe_light_cube_reached(from, &scene->object[plan->refractor_object[k]]);
     for (int face = 0; face < ABBE_LIGHT_CUBE_FACES; face++) {
-      abbe_result result =
-          faces >> face & 1 ? check_layers(scene, plan, from, face, k, error) : ABBE_OK;
-      if (result != ABBE_OK) return result;
+      ABBE_TRY(faces >> face & 1 ? check_layers(scene, plan, from, face, k, error) : ABBE_OK);
     }
     all |= faces;
   }
@@ -290,8 +288,7 @@ abbe_result abbe_light_views_choose(const abbe_scene *scene, abbe_plan *plan, ab
   if (plan->refractor_count == 0) return ABBE_OK;
   for (size_t i = 0; i < scene->light_count; i++) {
     if (scene->light[i].kind == ABBE_LIGHT_DIRECTIONAL || !plan->reaches[i]) continue;
-    abbe_result result = examine_view(scene, i, plan, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(examine_view(scene, i, plan, error));
   }
   plan->caustics = false;
   for (size_t i = 0; i < plan->light_view_count; i++)

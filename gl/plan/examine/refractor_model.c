@@ -188,8 +188,7 @@ static abbe_result add_mirror(const abbe_scene *scene, size_t i, abbe_plan *plan
   const abbe_object *object = &scene->object[i];
   const abbe_refractor_model model = mirror_model(scene, object, plan);
   char reason[288], reflects[128];
-  abbe_result result = abbe_spectral_needs_mirror(object, plan, reflects, sizeof reflects, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_spectral_needs_mirror(object, plan, reflects, sizeof reflects, error));
   add(scene, plan, i, true, model);
   plan->mirror_count++;
   snprintf(reason, sizeof reason, "%s: the object is a mirror%s", abbe_refractor_model_name(model),

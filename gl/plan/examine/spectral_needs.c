@@ -25,8 +25,7 @@ abbe_result abbe_material_range_make(const abbe_material *material, double min_n
   for (int i = 0; i < STEPS; i++) {
     const double lambda_nm = min_nm + (max_nm - min_nm) * i / (STEPS - 1);
     double n = 0;
-    abbe_result result = abbe_material_n(material, lambda_nm, &n, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_material_n(material, lambda_nm, &n, error));
     const double per_m = abbe_material_attenuation(material, lambda_nm);
     out->least_n = fmin(out->least_n, n);
     out->most_n = fmax(out->most_n, n);
@@ -219,8 +218,7 @@ abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_mate
   const double min = plan->desc.min_nm, max = plan->desc.max_nm;
   bool outside = extrapolated_share(scene, material, min, max) > LEAST_EXTRAPOLATED;
   abbe_material_range range;
-  abbe_result result = abbe_material_range_make(material, min, max, &range, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_material_range_make(material, min, max, &range, error));
   /* as floats: the shaders hold it so */
   if ((float)range.least_n != (float)range.most_n) plan->dispersive = true;
   if (range.least_per_m != range.most_per_m) plan->tinting = true;
@@ -249,9 +247,8 @@ abbe_result abbe_spectral_needs_mirror(const abbe_object *mirror, abbe_plan *pla
   }
   for (int i = 0; i < RANGE_STEPS; i++) {
     double n, k;
-    abbe_result result = abbe_material_nk(mirror->conductor,
-                                          min + (max - min) * i / (RANGE_STEPS - 1), &n, &k, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_material_nk(mirror->conductor, min + (max - min) * i / (RANGE_STEPS - 1), &n, &k,
+                              error));
     const double reflectance = abbe_optics_fresnel_conductor(1, n, k);
     least = fmin(least, reflectance);
     most = fmax(most, reflectance);

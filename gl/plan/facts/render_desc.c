@@ -286,19 +286,18 @@ static abbe_result check_choices(const abbe_render_desc *d, abbe_error *error) {
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the fill '%s' does not go with the profile '%s'",
                           abbe_fill_name(d->fill), abbe_profile_name(d->profile));
-  abbe_result result = check_published(d, error);
-  if (result == ABBE_OK) result = check_pinholes(d, error);
-  return result == ABBE_OK ? check_volume(d, error) : result;
+  ABBE_TRY(check_published(d, error));
+  ABBE_TRY(check_pinholes(d, error));
+  return check_volume(d, error);
 }
 
 abbe_result abbe_render_desc_resolve(const abbe_render_desc *desc, size_t width, size_t height,
                                      abbe_render_desc *out, abbe_error *error) {
   *out = desc != NULL ? *desc : (abbe_render_desc){0};
   fill_in_defaults(width, height, out);
-  abbe_result result = check_counts(out, error);
-  if (result == ABBE_OK) result = check_choices(out, error);
-  if (result == ABBE_OK) result = check_numbers(out, error);
-  return result;
+  ABBE_TRY(check_counts(out, error));
+  ABBE_TRY(check_choices(out, error));
+  return check_numbers(out, error);
 }
 
 /* Choices are written as int. */

@@ -43,9 +43,8 @@ abbe_result abbe_refractor_faces_draw(const abbe_refractor_faces *faces,
   const GLuint colour[2] = {target->layers, target->owner};
   const int layer[2] = {target->layer, target->owner_layer};
   const bool owners = !target->back;
-  abbe_result result = abbe_gpu_set_target(scene->gpu, colour, layer, owners ? 2 : 1, target->depth,
-                                           target->width, target->height, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_set_target(scene->gpu, colour, layer, owners ? 2 : 1, target->depth,
+                               target->width, target->height, error));
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   if (owners) gl->ClearBufferuiv(GL_COLOR, 1, nobody);
   if (clear_alone) return ABBE_OK;
@@ -320,9 +319,8 @@ abbe_result abbe_seen_meshes_make(const abbe_gpu_scene *scene, const abbe_view *
                             .count = count};
   if (out->cut == NULL || out->face_of == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for what the camera sees");
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < count && result == ABBE_OK; i++) result = cut_object(out, view, i, error);
-  return result;
+  for (size_t i = 0; i < count; i++) ABBE_TRY(cut_object(out, view, i, error));
+  return ABBE_OK;
 }
 
 void abbe_seen_meshes_free(abbe_seen_meshes *seen) {

@@ -120,14 +120,14 @@ static abbe_result begin(const abbe_scene *scene, const abbe_weights_range *ligh
   s->part = calloc(s->step[count] + 1, sizeof *s->part);
   if (s->share == NULL || s->part == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
-  abbe_result result = abbe_band_steps_make(scene, s->plan, s->step[count], &s->steps, error);
-  for (size_t i = 0; i < count && result == ABBE_OK; i++)
-    result = abbe_band_steps_fill(&s->steps, scene, s->plan, light, s->step[i], s->step[i + 1],
-                                  s->edge_nm[i], s->edge_nm[i + 1], error);
+  ABBE_TRY(abbe_band_steps_make(scene, s->plan, s->step[count], &s->steps, error));
+  for (size_t i = 0; i < count; i++)
+    ABBE_TRY(abbe_band_steps_fill(&s->steps, scene, s->plan, light, s->step[i], s->step[i + 1],
+                                  s->edge_nm[i], s->edge_nm[i + 1], error));
   for (size_t i = 0; i < s->step[count]; i++)
     for (int c = 0; c < 3; c++)
       s->steps.xyz[i][c] = of_white(s->steps.xyz[i][c], white[c], s->step[count]);
-  return result;
+  return ABBE_OK;
 }
 
 static void end(band_set *s) {

@@ -148,8 +148,7 @@ static abbe_result evaluate_materials(const abbe_scene *scene, const abbe_plan *
                               abbe_medium_scattering(object->medium, 550.0);
     for (size_t k = 0; k < n; k++) {
       const double lambda_nm = t->all.lambda_nm[k];
-      abbe_result result = abbe_material_n(material, lambda_nm, &t->index[i * n + k], error);
-      if (result != ABBE_OK) return result;
+      ABBE_TRY(abbe_material_n(material, lambda_nm, &t->index[i * n + k], error));
       if (!plan->mirror[i])
         t->attenuation[i * n + k] = abbe_material_attenuation(material, lambda_nm) +
                                     abbe_medium_scattering(object->medium, lambda_nm);
@@ -353,9 +352,7 @@ abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelen
   for (size_t i = 0; i < w->count; i++) {
     out[i] = (abbe_mirror_node){.factor = 1 - mirror->mirror_reflectance, .k = -1};
     if (mirror->conductor == NULL) continue;
-    abbe_result result =
-        abbe_material_nk(mirror->conductor, w->lambda_nm[i], &out[i].n, &out[i].k, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_material_nk(mirror->conductor, w->lambda_nm[i], &out[i].n, &out[i].k, error));
   }
   if (mirror->conductor == NULL) return ABBE_OK;
   double *room = calloc(4 * w->count + 1, sizeof *room), *corner = room + 3 * w->count;

@@ -252,8 +252,7 @@ static abbe_result find_bytes(abbe_gltf *g, const cJSON *object, size_t offset, 
   if (result == ABBE_OK) result = abbe_gltf_whole(g, view, "buffer", "a buffer view", 0, &index);
   if (result != ABBE_OK) return result;
   if (buffer == NULL) return abbe_gltf_fail(g, ABBE_SCHEMA, "a buffer view names no 'buffer'");
-  result = load(g, index);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(load(g, index));
   if (stride != NULL && step > 0) *stride = step;
   const size_t has = g->buffer[index].size;
   if (start > has || length > has - start || offset > length || size > length - offset)
@@ -333,8 +332,7 @@ static abbe_result locate(abbe_gltf *g, accessor *a) {
   a->stride = size;
   if (a->count == 0 || cJSON_GetObjectItemCaseSensitive(a->item, "bufferView") == NULL)
     return ABBE_OK;
-  const abbe_result result = find_bytes(g, a->item, a->offset, size, &a->stride, &a->bytes);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(find_bytes(g, a->item, a->offset, size, &a->stride, &a->bytes));
   if (a->count - 1 > (((size_t)1 << 40) - size) / a->stride)
     return abbe_gltf_fail(g, ABBE_SCHEMA, "an accessor has %zu elements %zu bytes apart", a->count,
                           a->stride);

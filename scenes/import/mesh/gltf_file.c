@@ -277,20 +277,18 @@ static void instance_matrix(const instances *in, size_t i, const double node[16]
 /* Whether the primitive is of the material that is to be read. */
 static abbe_result is_wanted(const abbe_gltf *g, const cJSON *item, bool *wanted) {
   const cJSON *material;
-  const abbe_result result =
-      abbe_gltf_reference(g, item, "material", "a primitive", &g->materials, &material);
+  ABBE_TRY(abbe_gltf_reference(g, item, "material", "a primitive", &g->materials, &material));
   const char *name = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(material, "name"));
   *wanted = g->to->material == NULL || (name != NULL && strcmp(name, g->to->material) == 0);
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result add_mesh(abbe_gltf *g, const cJSON *node, const cJSON *mesh,
                             const double matrix[16]) {
   const cJSON *item;
   instances in;
-  abbe_result result = check_node(g, node);
-  if (result != ABBE_OK) return result;
-  result = read_instances(g, node, &in);
+  ABBE_TRY(check_node(g, node));
+  abbe_result result = read_instances(g, node, &in);
   cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(mesh, "primitives")) {
     enum { TRIANGLES = 4, FAN = 6 };
     primitive p = {0};

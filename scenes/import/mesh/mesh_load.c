@@ -14,8 +14,7 @@
 /* One vertex a point, in the file's order. */
 static abbe_result join_points(abbe_mesh *mesh, const abbe_topology *t, abbe_error *error) {
   abbe_mesh joined;
-  const abbe_result result = abbe_mesh_make(t->point_count, t->face_count, false, &joined, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_mesh_make(t->point_count, t->face_count, false, &joined, error));
   memcpy(joined.position, t->position, t->point_count * sizeof *joined.position);
   memcpy(joined.face, t->face, t->face_count * sizeof *joined.face);
   abbe_mesh_free(mesh);

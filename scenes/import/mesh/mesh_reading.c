@@ -169,8 +169,7 @@ abbe_result abbe_mesh_reading_finish(const abbe_mesh_reading *r, abbe_mesh *out,
   const uint32_t *sides = r->sides.item;
   size_t longest = 3;
   memset(out, 0, sizeof *out);
-  abbe_result result = check(r, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check(r, error));
   const features has = find_features(r);
   for (size_t f = 0; f < r->sides.count; f++)
     if (sides[f] > longest) longest = sides[f];
@@ -181,10 +180,9 @@ abbe_result abbe_mesh_reading_finish(const abbe_mesh_reading *r, abbe_mesh *out,
                           "%s: it has %zu vertices and %zu triangles; at the most %u of each are "
                           "read",
                           r->path, vertices, faces, ABBE_MESH_MAX_FACES);
-  result = abbe_mesh_make(vertices, faces, has.uv, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_mesh_make(vertices, faces, has.uv, out, error));
   fill_vertices(r, &has, out);
-  result = cut_all(r, &has, longest, out, error);
+  abbe_result result = cut_all(r, &has, longest, out, error);
   if (result != ABBE_OK) abbe_mesh_free(out);
   return result;
 }

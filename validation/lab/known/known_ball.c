@@ -34,8 +34,7 @@ static abbe_result crossing(abbe_known_stage *stage, double radius, double heigh
     double u[2] = {cos(around), sin(around)};
     double from[3] = {height * u[0], height * u[1], 3 * radius};
     const double down[3] = {0, 0, -1};
-    abbe_result result = abbe_known_follow(stage, from, down, lambda_nm, "tt", error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_known_follow(stage, from, down, lambda_nm, "tt", error));
     const abbe_route_vertex *v = &stage->vertex[1];
     bool passed = stage->count == 3 && v->event == ABBE_ROUTE_TRANSMITTED;
     double off = v->position[0] * u[0] + v->position[1] * u[1];
@@ -54,8 +53,7 @@ static abbe_result focus(abbe_known_stage *stage, double radius, double lambda_n
   double variance = 0;
   for (int i = 0; i < 3; i++) {
     mean one;
-    abbe_result result = crossing(stage, radius, share[i] * radius, lambda_nm, &one, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(crossing(stage, radius, share[i] * radius, lambda_nm, &one, error));
     out->value += factor[i] * one.value;
     variance += pow(factor[i] * one.standard_error, 2);
   }
@@ -109,9 +107,8 @@ static abbe_result add_crossing(abbe_known_run *run, double radius, double share
   abbe_known_stage stage;
   double n = 0;
   mean traced = {0};
-  abbe_result result = abbe_known_stage_make(&stage, error, ball_text, radius, "n-bk7");
-  if (result != ABBE_OK) return result;
-  result = abbe_known_stage_n(&stage, ABBE_LINE_D_NM, &n, error);
+  ABBE_TRY(abbe_known_stage_make(&stage, error, ball_text, radius, "n-bk7"));
+  abbe_result result = abbe_known_stage_n(&stage, ABBE_LINE_D_NM, &n, error);
   if (result == ABBE_OK)
     result = crossing(&stage, radius, share * radius, ABBE_LINE_D_NM, &traced, error);
   abbe_known_stage_free(&stage);
@@ -132,9 +129,8 @@ static abbe_result add_crossing(abbe_known_run *run, double radius, double share
 abbe_result abbe_known_ball(abbe_known_run *run, abbe_error *error) {
   static const double radii[] = {1e-4, 5e-3, 1e4}, shares[] = {0.5, 0.9};
   abbe_known_stage stage;
-  abbe_result result = abbe_known_stage_make(&stage, error, ball_text, 5e-3, "n-bk7");
-  if (result != ABBE_OK) return result;
-  result = add_focus(run, &stage, 5e-3, error);
+  ABBE_TRY(abbe_known_stage_make(&stage, error, ball_text, 5e-3, "n-bk7"));
+  abbe_result result = add_focus(run, &stage, 5e-3, error);
   abbe_known_stage_free(&stage);
   for (int r = 0; r < 3; r++)
     for (int s = 0; s < 2 && result == ABBE_OK; s++)

@@ -17,14 +17,13 @@ static abbe_result enter(abbe_known_stage *stage, const double axis[3], double i
                          const char *choices, double *n_o, double *n_e, abbe_error *error) {
   const double d[3] = {sin(incidence), 0, -cos(incidence)};
   const double from[3] = {-THICK * d[0], 0, THICK / 2 - THICK * d[2]};
-  abbe_result result = abbe_known_stage_make(
+  ABBE_TRY(abbe_known_stage_make(
       stage, error,
       "- {name: block, shape: box, size: [%g, %g, %g], material: calcite, axis: [%.17g, %.17g, "
       "%.17g]}\n",
-      4 * THICK, 4 * THICK, THICK, axis[0], axis[1], axis[2]);
-  if (result != ABBE_OK) return result;
+      4 * THICK, 4 * THICK, THICK, axis[0], axis[1], axis[2]));
   const abbe_material *calcite = stage->scene.object[0].material;
-  result = abbe_material_n(calcite, ABBE_LINE_D_NM, n_o, error);
+  abbe_result result = abbe_material_n(calcite, ABBE_LINE_D_NM, n_o, error);
   if (result == ABBE_OK)
     result = abbe_material_n_extraordinary(calcite, ABBE_LINE_D_NM, n_e, error);
   if (result == ABBE_OK) result = abbe_known_follow(stage, from, d, ABBE_LINE_D_NM, choices, error);
@@ -39,8 +38,7 @@ static abbe_result add_angle(abbe_known_run *run, double degrees, abbe_error *er
   const double a = degrees / ABBE_KNOWN_DEGREES, axis[3] = {sin(a), 0, cos(a)};
   const double down[3] = {0, 0, -1};
   double n_o, n_e;
-  abbe_result result = enter(&stage, axis, 0, "TT", &n_o, &n_e, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(enter(&stage, axis, 0, "TT", &n_o, &n_e, error));
   const double o = n_o * n_o, e = n_e * n_e, s = sin(a), c = cos(a);
   const double tangent = (o - e) * s * c / (e * c * c + o * s * s);
   abbe_known_answer row = {.unit = "degrees",
@@ -51,7 +49,7 @@ static abbe_result add_angle(abbe_known_run *run, double degrees, abbe_error *er
                            .reason = rounding};
   abbe_number_format(row.quantity, sizeof row.quantity,
                      "calcite, axis at %g degrees, between its rays", degrees);
-  result = abbe_known_add(run, row, error);
+  abbe_result result = abbe_known_add(run, row, error);
   if (result == ABBE_OK && stage.count == 3) {
     const double *out = stage.vertex[1].position;
     row = (abbe_known_answer){.unit = "thickness",
@@ -75,8 +73,7 @@ static abbe_result add_across(abbe_known_run *run, double degrees, bool extraord
   abbe_known_stage stage;
   const double axis[3] = {0, 1, 0}, up[3] = {0, 0, 1}, i = degrees / ABBE_KNOWN_DEGREES;
   double n_o, n_e, back[3];
-  abbe_result result = enter(&stage, axis, i, extraordinary ? "TT" : "tt", &n_o, &n_e, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(enter(&stage, axis, i, extraordinary ? "TT" : "tt", &n_o, &n_e, error));
   const double t = asin(sin(i) / (extraordinary ? n_e : n_o));
   const double r = extraordinary ? sin(i - t) / sin(i + t) : tan(i - t) / tan(i + t);
   for (int k = 0; k < 3; k++) back[k] = -stage.vertex[0].direction[k];
@@ -88,7 +85,7 @@ static abbe_result add_across(abbe_known_run *run, double degrees, bool extraord
                            .reason = rounding};
   abbe_number_format(row.quantity, sizeof row.quantity,
                      "calcite, axis across, %s ray from %g degrees", name, degrees);
-  result = abbe_known_add(run, row, error);
+  abbe_result result = abbe_known_add(run, row, error);
   if (result == ABBE_OK) {
     row = (abbe_known_answer){.unit = "share",
                               .exact = (1 - r * r) / 2,
@@ -110,9 +107,8 @@ static abbe_result add_extinction(abbe_known_run *run, const double axis[3], con
                                   bool extraordinary, abbe_error *error) {
   abbe_known_stage stage;
   double n_o, n_e;
-  abbe_result result =
-      enter(&stage, axis, 40 / ABBE_KNOWN_DEGREES, extraordinary ? "Tr" : "tR", &n_o, &n_e, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(
+      enter(&stage, axis, 40 / ABBE_KNOWN_DEGREES, extraordinary ? "Tr" : "tR", &n_o, &n_e, error));
   const abbe_route_vertex *v = &stage.vertex[1];
   const bool other = v->event == ABBE_ROUTE_REFLECTED && v->extraordinary != extraordinary;
   abbe_known_answer row = {.unit = "share",
@@ -125,7 +121,7 @@ static abbe_result add_extinction(abbe_known_run *run, const double axis[3], con
   abbe_number_format(row.quantity, sizeof row.quantity,
                      "calcite, axis %s, %s ray that becomes the other", what,
                      extraordinary ? "extraordinary" : "ordinary");
-  result = abbe_known_add(run, row, error);
+  abbe_result result = abbe_known_add(run, row, error);
   abbe_known_stage_free(&stage);
   return result;
 }
@@ -133,12 +129,10 @@ static abbe_result add_extinction(abbe_known_run *run, const double axis[3], con
 abbe_result abbe_known_crystal(abbe_known_run *run, abbe_error *error) {
   static const double angles[] = {0, 30, 45, 60, 90}, incidences[] = {30, 60};
   static const double across[3] = {0, 1, 0}, within[3] = {0.6, 0, 0.8};
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < 5 && result == ABBE_OK; i++) result = add_angle(run, angles[i], error);
-  for (int i = 0; i < 4 && result == ABBE_OK; i++)
-    result = add_across(run, incidences[i / 2], i % 2 != 0, error);
-  for (int i = 0; i < 4 && result == ABBE_OK; i++)
-    result = add_extinction(run, i / 2 ? within : across, i / 2 ? "in the plane" : "across",
-                            i % 2 != 0, error);
-  return result;
+  for (int i = 0; i < 5; i++) ABBE_TRY(add_angle(run, angles[i], error));
+  for (int i = 0; i < 4; i++) ABBE_TRY(add_across(run, incidences[i / 2], i % 2 != 0, error));
+  for (int i = 0; i < 4; i++)
+    ABBE_TRY(add_extinction(run, i / 2 ? within : across, i / 2 ? "in the plane" : "across",
+                            i % 2 != 0, error));
+  return ABBE_OK;
 }

@@ -63,8 +63,7 @@ static const char reason[] = "as improbable as four standard errors, taken from 
 /* Draws from many texels want more bits of their random numbers. */
 static abbe_result make_even(abbe_environment *e, size_t texels, abbe_error *error) {
   abbe_radiance_map map;
-  abbe_result result = abbe_radiance_map_make(texels, &map, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_radiance_map_make(texels, &map, error));
   for (size_t i = 0; i < 3 * map.width * map.height; i++) map.rgb[i] = 2;
   abbe_alias_table_free(&e->texels);
   for (size_t i = 0; i < e->level_count; i++) abbe_radiance_map_free(&e->level[i]);
@@ -192,8 +191,7 @@ static abbe_result add_room(abbe_known_run *run, const room *r, double from, dou
 
 abbe_result abbe_known_furnace(abbe_known_run *run, abbe_error *error) {
   const int count = sizeof rooms / sizeof *rooms;
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < count && result == ABBE_OK; i++)
-    result = add_room(run, &rooms[i], (double)i / count, (i + 1.0) / count, error);
-  return result;
+  for (int i = 0; i < count; i++)
+    ABBE_TRY(add_room(run, &rooms[i], (double)i / count, (i + 1.0) / count, error));
+  return ABBE_OK;
 }

@@ -15,11 +15,10 @@ static abbe_result add_shift(abbe_known_run *run, double thickness, double degre
                              abbe_error *error) {
   abbe_known_stage stage;
   double n = 0, angle = degrees / ABBE_KNOWN_DEGREES, traced = NAN;
-  abbe_result result = abbe_known_stage_make(
+  ABBE_TRY(abbe_known_stage_make(
       &stage, error, "- {name: slab, shape: box, size: [%g, %g, %g], material: n-bk7}\n",
-      8 * thickness, 8 * thickness, thickness);
-  if (result != ABBE_OK) return result;
-  result = abbe_known_stage_n(&stage, ABBE_LINE_D_NM, &n, error);
+      8 * thickness, 8 * thickness, thickness));
+  abbe_result result = abbe_known_stage_n(&stage, ABBE_LINE_D_NM, &n, error);
   const double d[3] = {sin(angle), 0, -cos(angle)};
   double from[3] = {-2 * thickness * d[0], 0, thickness / 2 - 2 * thickness * d[2]};
   if (result == ABBE_OK) result = abbe_known_follow(&stage, from, d, ABBE_LINE_D_NM, "tt", error);
@@ -45,10 +44,9 @@ static abbe_result add_shift(abbe_known_run *run, double thickness, double degre
 
 abbe_result abbe_known_slab(abbe_known_run *run, abbe_error *error) {
   static const double degrees[] = {5, 30, 45, 60, 80}, sizes[] = {1e-4, 1e4};
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < 5 && result == ABBE_OK; i++) result = add_shift(run, 0.01, degrees[i], error);
-  for (int i = 0; i < 2 && result == ABBE_OK; i++) result = add_shift(run, sizes[i], 45, error);
-  return result;
+  for (int i = 0; i < 5; i++) ABBE_TRY(add_shift(run, 0.01, degrees[i], error));
+  for (int i = 0; i < 2; i++) ABBE_TRY(add_shift(run, sizes[i], 45, error));
+  return ABBE_OK;
 }
 
 /* ---- Fresnel ---- */
@@ -101,9 +99,8 @@ static abbe_result add_share(abbe_known_run *run, abbe_known_stage *stage, doubl
 static abbe_result add_critical(abbe_known_run *run, const char *material, abbe_error *error) {
   abbe_known_stage stage;
   double n = 0, traced = NAN;
-  abbe_result result = abbe_known_stage_make(&stage, error, wedge_text, material);
-  if (result != ABBE_OK) return result;
-  result = abbe_known_stage_n(&stage, ABBE_LINE_D_NM, &n, error);
+  ABBE_TRY(abbe_known_stage_make(&stage, error, wedge_text, material));
+  abbe_result result = abbe_known_stage_n(&stage, ABBE_LINE_D_NM, &n, error);
   double low = -80 / ABBE_KNOWN_DEGREES, high = asin(fmin(n * sin(WEDGE_RAD), 0.99));
   for (int step = 0; step < 50 && result == ABBE_OK; step++) {
     double middle = (low + high) / 2;
@@ -133,9 +130,8 @@ abbe_result abbe_known_fresnel(abbe_known_run *run, abbe_error *error) {
   static const char *const materials[] = {"n-bk7", "water", "diamond"};
   abbe_known_stage stage;
   double n = 0;
-  abbe_result result = abbe_known_stage_make(&stage, error, wedge_text, "n-bk7");
-  if (result != ABBE_OK) return result;
-  result = abbe_known_stage_n(&stage, ABBE_LINE_D_NM, &n, error);
+  ABBE_TRY(abbe_known_stage_make(&stage, error, wedge_text, "n-bk7"));
+  abbe_result result = abbe_known_stage_n(&stage, ABBE_LINE_D_NM, &n, error);
   for (int i = 0; i < 5 && result == ABBE_OK; i++)
     result = add_share(run, &stage, outside[i], false, error);
   if (result == ABBE_OK) /* Brewster's */

@@ -19,10 +19,10 @@ static abbe_result add_metal(abbe_known_run *run, const char *metal, double degr
   abbe_known_stage stage;
   abbe_mirrors mirrors = {0};
   double n = 0, k = 0;
-  abbe_result result = abbe_known_stage_make(
-      &stage, error, "- {name: ball, shape: sphere, radius: 1, mirror: %s}\n", metal);
-  if (result != ABBE_OK) return result;
-  result = abbe_material_nk(stage.scene.object[0].conductor, ABBE_LINE_D_NM, &n, &k, error);
+  ABBE_TRY(abbe_known_stage_make(&stage, error,
+                                 "- {name: ball, shape: sphere, radius: 1, mirror: %s}\n", metal));
+  abbe_result result =
+      abbe_material_nk(stage.scene.object[0].conductor, ABBE_LINE_D_NM, &n, &k, error);
   if (result == ABBE_OK) result = abbe_mirrors_make(&stage.geometry, lambda_nm, 1, &mirrors, error);
   abbe_known_answer row = {.unit = "share",
                            .exact = abbe_closed_form_conductor(angle, n, k),
@@ -40,10 +40,8 @@ static abbe_result add_metal(abbe_known_run *run, const char *metal, double degr
 
 static abbe_result add_metals(abbe_known_run *run, abbe_error *error) {
   static const char *const metals[] = {"silver", "aluminium", "gold", "copper"};
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < 8 && result == ABBE_OK; i++)
-    result = add_metal(run, metals[i / 2], i % 2 ? 60 : 0, error);
-  return result;
+  for (int i = 0; i < 8; i++) ABBE_TRY(add_metal(run, metals[i / 2], i % 2 ? 60 : 0, error));
+  return ABBE_OK;
 }
 
 /* ---- whole runs ---- */

@@ -116,8 +116,7 @@ static abbe_result exact_of(const pane *p, const abbe_scene *scene, double *refl
   const abbe_material *material = scene->object[0].material;
   double n = 0, angle = p->degrees / ABBE_KNOWN_DEGREES;
   if (p->kind == CRYSTAL) return exact_of_crystal(p, material, reflected, passed, error);
-  abbe_result result = abbe_material_n(material, p->lambda_nm, &n, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_material_n(material, p->lambda_nm, &n, error));
   double slanted = p->thickness / cos(asin(sin(angle) / n));
   double tau = exp(-abbe_material_attenuation(material, p->lambda_nm) * slanted);
   double face = abbe_closed_form_fresnel(angle, n);
@@ -243,10 +242,8 @@ abbe_result abbe_known_pane_setting(abbe_known_run *run, size_t index, bool abso
 }
 
 abbe_result abbe_known_pane(abbe_known_run *run, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < CLEAR && result == ABBE_OK; i++)
-    result = abbe_known_pane_setting(run, i, false, error);
-  return result;
+  for (size_t i = 0; i < CLEAR; i++) ABBE_TRY(abbe_known_pane_setting(run, i, false, error));
+  return ABBE_OK;
 }
 
 abbe_result abbe_known_sheets(abbe_known_run *run, double to, abbe_error *error) {
@@ -258,10 +255,8 @@ abbe_result abbe_known_sheets(abbe_known_run *run, double to, abbe_error *error)
 }
 
 abbe_result abbe_known_absorption(abbe_known_run *run, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < ABSORBING && result == ABBE_OK; i++)
-    result = abbe_known_pane_setting(run, i, true, error);
-  return result;
+  for (size_t i = 0; i < ABSORBING; i++) ABBE_TRY(abbe_known_pane_setting(run, i, true, error));
+  return ABBE_OK;
 }
 
 /* Balls within balls: where refractors overlap the later one is there. */

@@ -243,10 +243,8 @@ abbe_result abbe_known_picture_setting(abbe_known_run *run, size_t index, abbe_e
 }
 
 abbe_result abbe_known_picture(abbe_known_run *run, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < VIEWS && result == ABBE_OK; i++)
-    result = abbe_known_picture_setting(run, i, error);
-  return result;
+  for (size_t i = 0; i < VIEWS; i++) ABBE_TRY(abbe_known_picture_setting(run, i, error));
+  return ABBE_OK;
 }
 
 enum { MAX_GROUPS = 32 };
@@ -300,8 +298,7 @@ abbe_result abbe_known_chart_write(const char *path, const abbe_known_answers *a
   if (answers->count == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: there are no answers to draw", path);
   columns c = {0};
-  abbe_result result = fill(answers, &c, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(fill(answers, &c, error));
   double reach = 1; /* rows out of tolerance are to be seen */
   for (size_t i = 0; i < answers->count; i++)
     if (isfinite(c.share[i])) reach = fmax(reach, 1.1 * fabs(c.share[i]));
@@ -334,8 +331,8 @@ abbe_result abbe_known_chart_write(const char *path, const abbe_known_answers *a
        .series = groups},
   };
   const bool both = c.levels > 1;
-  result = abbe_chart_write(path, both ? charts : charts + 1, both ? 2 : 1, 960, both ? 900 : 480,
-                            error);
+  abbe_result result = abbe_chart_write(path, both ? charts : charts + 1, both ? 2 : 1, 960,
+                                        both ? 900 : 480, error);
   free(c.x);
   return result;
 }

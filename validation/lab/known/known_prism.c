@@ -87,10 +87,9 @@ static abbe_result add_diamond(abbe_known_run *run, abbe_error *error) {
   enum { RAYS = 1000 };
   abbe_known_stage stage;
   double n = 0, least = 0, reached = 0, passed = 0;
-  abbe_result result = abbe_known_stage_make(&stage, error, prism_text, "diamond");
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_known_stage_make(&stage, error, prism_text, "diamond"));
   search s = {.stage = &stage, .lambda_nm = ABBE_LINE_D_NM, .error = error};
-  result = abbe_known_stage_n(&stage, s.lambda_nm, &n, error);
+  abbe_result result = abbe_known_stage_n(&stage, s.lambda_nm, &n, error);
   for (int i = 0; i < RAYS && result == ABBE_OK; i++) {
     double came[3];
     bool left;
@@ -152,14 +151,12 @@ static abbe_result add_position(abbe_known_run *run, abbe_known_stage *stage, co
                                 double lambda_nm, abbe_error *error) {
   double n = 0, from[3], came[3], landed[2];
   abbe_prism_ray ray;
-  abbe_result result = abbe_known_stage_n(stage, lambda_nm, &n, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_known_stage_n(stage, lambda_nm, &n, error));
   bool passes = abbe_closed_form_prism_ray(APEX_RAD, n, w->incidence, w->along, &ray);
   to_world(w->d.from, APEX_Z, from);
   to_world(w->d.came, 0, came);
   for (int k = 0; k < 3; k++) from[k] -= 0.1 * came[k];
-  result = abbe_known_follow(stage, from, came, lambda_nm, "tt", error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_known_follow(stage, from, came, lambda_nm, "tt", error));
   const abbe_route_vertex *end = &stage->vertex[stage->count - 1];
   bool lands = stage->count == 3 && end->event == ABBE_ROUTE_LANDED && end->object == 1;
   landed[0] = end->position[0];
@@ -179,9 +176,8 @@ abbe_result abbe_known_slit(abbe_known_run *run, abbe_error *error) {
   wall w = {.along = SIDE / 2};
   double n = 0, least = 0, from[3], to[3];
   abbe_known_stage stage;
-  abbe_result result = abbe_known_stage_make(&stage, error, prism_text, "sf10");
-  if (result != ABBE_OK) return result;
-  result = abbe_known_stage_n(&stage, ABBE_LINE_D_NM, &n, error);
+  ABBE_TRY(abbe_known_stage_make(&stage, error, prism_text, "sf10"));
+  abbe_result result = abbe_known_stage_n(&stage, ABBE_LINE_D_NM, &n, error);
   abbe_known_stage_free(&stage);
   if (result != ABBE_OK) return result;
   abbe_closed_form_prism_least(APEX_RAD, n, &least);

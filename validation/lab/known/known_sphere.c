@@ -284,17 +284,14 @@ abbe_result abbe_known_sphere_setting(abbe_known_run *run, size_t index, bool wh
 }
 
 abbe_result abbe_known_sphere(abbe_known_run *run, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < SETTINGS && result == ABBE_OK; i++)
-    result = abbe_known_sphere_setting(run, i, false, error);
-  return result;
+  for (size_t i = 0; i < SETTINGS; i++) ABBE_TRY(abbe_known_sphere_setting(run, i, false, error));
+  return ABBE_OK;
 }
 
 abbe_result abbe_known_white(abbe_known_run *run, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < WHITE_SETTINGS && result == ABBE_OK; i++)
-    result = abbe_known_sphere_setting(run, i, true, error);
-  return result;
+  for (size_t i = 0; i < WHITE_SETTINGS; i++)
+    ABBE_TRY(abbe_known_sphere_setting(run, i, true, error));
+  return ABBE_OK;
 }
 
 /* ---- convergence ---- */

@@ -30,11 +30,11 @@ static const char ray_reason[] = "1e-6 rad of a direction in single precision ov
 static abbe_result follow(abbe_known_stage *stage, double x, double lambda_nm, double *landing,
                           abbe_error *error) {
   const double from[3] = {x, 0.0013, 1}, down[3] = {0, 0, -1};
-  const abbe_result result = abbe_known_follow(stage, from, down, lambda_nm, "t", error);
+  ABBE_TRY(abbe_known_follow(stage, from, down, lambda_nm, "t", error));
   const abbe_route_vertex *last = &stage->vertex[stage->count > 0 ? stage->count - 1 : 0];
   const bool landed = stage->count == 2 && last->event == ABBE_ROUTE_LANDED;
   *landing = landed ? last->position[0] : NAN;
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result add_rays(abbe_known_run *run, abbe_error *error) {
@@ -75,7 +75,7 @@ static abbe_result add_focus(abbe_known_run *run, const char *line, double lambd
   row.tolerance = 1e-3 * row.exact;
   for (int i = 0; i < 3 && result == ABBE_OK; i++) {
     const double x = steps[i] * WAVELENGTH / 256;
-    double at;
+    double at = 0;
     result = follow(&stage, x, lambda_nm, &at, error);
     const double crest = w.amplitude * (1 - cos(2 * ABBE_PI * x / w.wavelength));
     const double fell = w.depth + w.amplitude - crest;
@@ -256,13 +256,12 @@ static abbe_result add_below(abbe_known_run *run, bool mirrored, double from, do
 }
 
 abbe_result abbe_known_water(abbe_known_run *run, abbe_error *error) {
-  abbe_result result = add_rays(run, error);
-  if (result == ABBE_OK) result = add_focus(run, "F", ABBE_LINE_F_NM, error);
-  if (result == ABBE_OK) result = add_focus(run, "C", ABBE_LINE_C_NM, error);
-  if (result == ABBE_OK) result = add_light(run, 0.25, 0, 0.4, error);
-  if (result == ABBE_OK) result = add_light(run, 0.8, 0.4, 0.8, error);
-  if (result == ABBE_OK) result = add_seen(run, 0.8, 0.9, error);
-  if (result == ABBE_OK) result = add_below(run, false, 0.9, 0.95, error);
-  if (result == ABBE_OK) result = add_below(run, true, 0.95, 1, error);
-  return result;
+  ABBE_TRY(add_rays(run, error));
+  ABBE_TRY(add_focus(run, "F", ABBE_LINE_F_NM, error));
+  ABBE_TRY(add_focus(run, "C", ABBE_LINE_C_NM, error));
+  ABBE_TRY(add_light(run, 0.25, 0, 0.4, error));
+  ABBE_TRY(add_light(run, 0.8, 0.4, 0.8, error));
+  ABBE_TRY(add_seen(run, 0.8, 0.9, error));
+  ABBE_TRY(add_below(run, false, 0.9, 0.95, error));
+  return add_below(run, true, 0.95, 1, error);
 }

@@ -264,8 +264,7 @@ static abbe_result check(const abbe_sphere_setup *s, abbe_error *error) {
 abbe_result abbe_sphere_quadrature_make(const abbe_sphere_setup *setup,
                                         abbe_sphere_quadrature **out, abbe_error *error) {
   *out = NULL;
-  abbe_result result = check(setup, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check(setup, error));
   abbe_sphere_quadrature *q = calloc(1, sizeof *q);
   if (q != NULL) {
     q->setup = *setup;

@@ -41,8 +41,7 @@ abbe_result abbe_gem_grid_file_write(const char *path, const abbe_gem_optimum *o
   assert(o->value);
   abbe_file_writer writer = {0};
   char text[ASKED_SIZE];
-  abbe_result result = abbe_file_writer_open(&writer, path, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_file_writer_open(&writer, path, error));
   asked(o, text);
   fprintf(writer.stream, "# asked: %s\n%s\n", text, COLUMNS);
   for (size_t i = 0; i < o->crowns * o->pavilions; i++)

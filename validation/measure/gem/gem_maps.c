@@ -76,8 +76,7 @@ static double encode(double light) {
 abbe_result abbe_gem_map_paint(const abbe_gem_view *v, abbe_gem_map map, abbe_image *out,
                                abbe_error *error) {
   static const char *const channels[] = {"R", "G", "B"};
-  abbe_result result = abbe_image_make(v->side, v->side, 3, channels, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_image_make(v->side, v->side, 3, channels, out, error));
   abbe_rgb_encoding_srgb(out->xy, out->curve);
   for (size_t i = 0; i < v->side * v->side; i++) {
     double rgb[3];

@@ -55,8 +55,7 @@ static abbe_result check_pair(const abbe_gem_optimum *o, size_t i, abbe_error *e
 abbe_result abbe_gem_optimum_apply(const abbe_gem_optimum *o, abbe_cut *cut,
                                    const abbe_cut_polyhedron *polyhedron, size_t i,
                                    abbe_error *error) {
-  const abbe_result result = check_pair(o, i, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_pair(o, i, error));
   return abbe_cut_stretch_apply(
       cut, polyhedron, tan(o->crown_rad[i % o->crowns]) / tan(o->design_crown_rad),
       tan(o->pavilion_rad[i / o->crowns]) / tan(o->design_pavilion_rad), error);
@@ -181,12 +180,12 @@ abbe_result abbe_gem_optimum_judge(const abbe_cut *cut, const abbe_cut_polyhedro
                                    size_t i, abbe_error *error) {
   const work w = {material, wavelengths, weights, desc};
   abbe_gem_number value;
-  abbe_result result = check_pair(optimum, i, error);
+  ABBE_TRY(check_pair(optimum, i, error));
   abbe_gem_stone stone = {0};
-  if (result == ABBE_OK) result = make_pair(&w, cut, polyhedron, optimum, i, &stone, error);
-  if (result == ABBE_OK) result = judge(&w, &stone, &value, error);
-  if (result == ABBE_OK) abbe_gem_optimum_know(optimum, i, value);
-  return result;
+  ABBE_TRY(make_pair(&w, cut, polyhedron, optimum, i, &stone, error));
+  ABBE_TRY(judge(&w, &stone, &value, error));
+  abbe_gem_optimum_know(optimum, i, value);
+  return ABBE_OK;
 }
 
 abbe_result abbe_gem_optimum_find(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,

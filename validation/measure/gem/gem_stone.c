@@ -68,8 +68,7 @@ static abbe_result check_index(const abbe_material *m, const abbe_wavelengths *w
   for (int axis = 0; axis < (abbe_material_is_crystal(m) ? 3 : 1); axis++)
     for (size_t i = 0; i < w->count; i++) {
       double n;
-      const abbe_result result = abbe_material_n_along(m, axis, w->lambda_nm[i], &n, error);
-      if (result != ABBE_OK) return result;
+      ABBE_TRY(abbe_material_n_along(m, axis, w->lambda_nm[i], &n, error));
       if (!(n > 1))
         return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                               "%s has index %.4g at %.4g nm; a stone's is above 1", m->name, n,
@@ -86,10 +85,8 @@ static abbe_result take_material(const abbe_material *m, const abbe_wavelengths 
   abbe_scene scene = {.object = &object, .object_count = 1};
   const abbe_geometry geometry = {
       .scene = &scene, .unit = s->unit_m, .refractor_count = 1, .refractor_object = &first};
-  const abbe_result result = check_index(m, w, error);
-  return result == ABBE_OK
-             ? abbe_media_make(&geometry, w->lambda_nm, w->count - 1, &s->media, error)
-             : result;
+  ABBE_TRY(check_index(m, w, error));
+  return abbe_media_make(&geometry, w->lambda_nm, w->count - 1, &s->media, error);
 }
 
 abbe_result abbe_gem_axes_read(const char *text, abbe_gem_axes *out, abbe_error *error) {

@@ -221,8 +221,7 @@ abbe_result abbe_gem_tilts_make(const abbe_gem_stone *stone, const abbe_weights 
                                 const abbe_gem_tilts_desc *desc, abbe_gem_tilts *out,
                                 abbe_error *error) {
   memset(out, 0, sizeof *out);
-  abbe_result result = check(stone, weights, desc, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check(stone, weights, desc, error));
   const work w = {.stone = stone,
                   .weights = weights,
                   .side = desc->side > 0 ? desc->side : 12,
@@ -235,7 +234,7 @@ abbe_result abbe_gem_tilts_make(const abbe_gem_stone *stone, const abbe_weights 
   out->has_fire = stone->wavelengths > 1;
   frame *f = NULL;
   unsigned char *states = NULL;
-  result = allocate(&w, out, &f, &states, error);
+  abbe_result result = allocate(&w, out, &f, &states, error);
   if (result == ABBE_OK) {
     for (int a = 0; a < ABBE_GEM_AXES; a++) out->axis_rad[a] = a * ABBE_PI / ABBE_GEM_AXES;
     for (size_t t = 0; t < out->tilts; t++)

@@ -150,12 +150,11 @@ abbe_result abbe_gem_view_make(const abbe_gem_stone *stone, const abbe_weights *
                                const abbe_gem_view_desc *desc, abbe_gem_view *out,
                                abbe_error *error) {
   memset(out, 0, sizeof *out);
-  abbe_result result = check(stone, weights, desc, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check(stone, weights, desc, error));
   out->side = desc->side > 0 ? desc->side : 128;
   out->repeats = desc->repeats > 0 ? desc->repeats : 8;
   out->wavelengths = stone->wavelengths;
-  result = allocate(out, error);
+  abbe_result result = allocate(out, error);
   if (result == ABBE_OK) {
     const abbe_gem_eye eye = abbe_gem_eye_make(desc->axis_rad, desc->tilt_rad);
     const work w = {.stone = stone,
