@@ -5,7 +5,6 @@
 #include <cjson/cJSON.h>
 #include <ctype.h>
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
 enum { REPLACEMENT = ABBE_UTF8_REPLACEMENT };

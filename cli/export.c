@@ -4,7 +4,6 @@
 
 #include "scenes/export/pov_file.h"
 #include "scenes/export/scene_export.h"
-#include "scenes/import/scene_file.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>

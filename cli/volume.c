@@ -4,7 +4,6 @@
 #include "cli/options/picture_options.h"
 #include "cli/options/scene_input.h"
 
-#include "base/maths.h"
 #include "base/text.h"
 #include "scenes/volume/caustic_volume.h"
 #include "validation/lab/volume_fill.h"
@@ -33,7 +32,6 @@ enum {
   OPTION_ASYMMETRIC,
   OPTION_SHELLS,
   OPTION_GRID,
-  OPTION_JOIN,
   OPTION_RADII,
   OPTION_PRINTED,
   OPTION_PHOTONS,
@@ -64,8 +62,6 @@ static const struct argp_option options[] = {
      "rays 24x48x48)",
      1},
     {"grid", OPTION_GRID, "N", 0, "or N x N x N cubes, 2 to 256", 1},
-    {"join", OPTION_JOIN, "X", 0,
-     "join cells that differ by less than X of the beam's irradiance: several resolutions", 1},
     {"radii", OPTION_RADII, "X", 0, "how far the region goes, in radii of the object (3)", 1},
     {"printed", OPTION_PRINTED, NULL, 0, "bytes as the method was published, for wyman2003", 1},
     {"photons", OPTION_PHOTONS, "N", 0, "of a node and pass (262144)", 2},
@@ -166,10 +162,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
         .kind = ABBE_REGION_GRID,
         .side = abbe_command_count(q->program, "--grid", text, 2, ABBE_REGION_MOST_SIDE)};
     return 0;
-  case OPTION_JOIN:
-    d->joins = true;
-    d->tolerance = abbe_command_number(q->program, "--join", text, 0, 1e6);
-    return 0;
   case OPTION_PRINTED:
     d->kind = ABBE_VOLUME_PRINTED;
     return 0;
@@ -256,8 +248,6 @@ static void summarise(const request *q, const abbe_caustic_volume *v,
         "of facets; of %.2g it is not known how they change\n",
         v->exits.count, v->exits.points, s->maps, s->carried, s->sequences, s->alone);
   if (s->error > 0) fprintf(stderr, "relative standard error %.2g\n", s->error);
-  if (s->joint_bytes > 0)
-    fprintf(stderr, "joint cells take %.4g MB\n", 1e-6 * (double)s->joint_bytes);
   if (s->outflow[1] > 0)
     fprintf(stderr, "flux out through the shells: %.5g to %.5g of what left the object\n",
             s->outflow[0], s->outflow[1]);
@@ -274,13 +264,13 @@ static abbe_result print_json(const request *q, const abbe_caustic_volume *v,
       {"radius_m", v->body.radius},        {"photons", (double)s->photons},
       {"passes", (double)s->passes},       {"seconds", s->seconds},
       {"relative_error", s->error},        {"bytes_memory", (double)abbe_caustic_volume_bytes(v)},
-      {"bytes_disk", file_bytes(q->out)},  {"bytes_joint", (double)s->joint_bytes},
-      {"reached_w", s->ledger.reached},    {"missed_w", s->ledger.missed},
-      {"exits", (double)v->exits.count},   {"exits_carried", s->carried},
-      {"exits_alone", s->alone},           {"sequences", (double)s->sequences},
-      {"points", (double)v->exits.points}, {"symmetry", (double)s->maps},
-      {"absorbed_w", s->ledger.absorbed},  {"lost_w", s->ledger.lost},
-      {"outflow_least", s->outflow[0]},    {"outflow_greatest", s->outflow[1]}};
+      {"bytes_disk", file_bytes(q->out)},  {"reached_w", s->ledger.reached},
+      {"missed_w", s->ledger.missed},      {"exits", (double)v->exits.count},
+      {"exits_carried", s->carried},       {"exits_alone", s->alone},
+      {"sequences", (double)s->sequences}, {"points", (double)v->exits.points},
+      {"symmetry", (double)s->maps},       {"absorbed_w", s->ledger.absorbed},
+      {"lost_w", s->ledger.lost},          {"outflow_least", s->outflow[0]},
+      {"outflow_greatest", s->outflow[1]}};
   bool made = cJSON_AddStringToObject(root, "file", q->out) != NULL &&
               cJSON_AddStringToObject(root, "object", v->body.name) != NULL;
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)

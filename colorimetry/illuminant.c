@@ -8,7 +8,6 @@
 #include "spectral/dispersion/csv_points.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>

@@ -1,7 +1,6 @@
 #include "colorimetry/upsampling.h"
 
 #include "colorimetry/observer_integral.h"
-#include "colorimetry/rgb_space.h"
 #include "colorimetry/weights.h"
 
 #include <math.h>

@@ -1,6 +1,5 @@
 #include "colorimetry/weights.h"
 
-#include "colorimetry/observer.h"
 #include "colorimetry/observer_integral.h"
 
 #include <assert.h>

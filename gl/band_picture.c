@@ -7,9 +7,7 @@
 #include "spectral/spectrum.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { NAME_SIZE = 32 };
 

@@ -3,7 +3,6 @@
 #include "base/maths.h"
 #include "base/number.h"
 #include "colorimetry/screen/screen_png.h"
-#include "scenes/geometry/transform.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,6 @@
 #include "scenes/geometry/transform.h"
 #include "scenes/scene.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

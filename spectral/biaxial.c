@@ -1,7 +1,6 @@
 #include "spectral/biaxial.h"
 
 #include "base/maths.h"
-#include "spectral/film.h"
 
 #include <complex.h>
 #include <math.h>

@@ -4,7 +4,6 @@
 #include "base/yaml/yaml_edit_text.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,6 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "scenes/cuts/cut_file.h"
-#include "scenes/cuts/cut_stretch.h"
 #include "spectral/formats/material_import.h"
 #include "spectral/spectrum.h"
 #include "spectral/wavelengths.h"

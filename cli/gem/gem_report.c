@@ -7,7 +7,6 @@
 
 #include <argp.h>
 #include <stdio.h>
-#include <string.h>
 
 enum {
   KEY_CSV = 0x100,

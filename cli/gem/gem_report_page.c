@@ -1,7 +1,6 @@
 /* The first page of a report: for who buys the stone. */
 #include "cli/gem/gem.h"
 
-#include "base/file.h"
 #include "base/maths.h"
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/plot/sheet.h"

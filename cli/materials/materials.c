@@ -1,7 +1,5 @@
 #include "cli/materials/materials.h"
 
-#include "cli/base/command.h"
-
 static const abbe_verb verbs[] = {
 #define ABBE_MATERIALS_ROW(name, summary) {#name, summary, abbe_materials_##name},
     ABBE_MATERIALS_VERBS(ABBE_MATERIALS_ROW)

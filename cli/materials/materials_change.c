@@ -1,7 +1,6 @@
 #include "cli/materials/materials.h"
 
 #include "base/file.h"
-#include "base/yaml/yaml_edit.h"
 #include "base/yaml/yaml_edit_text.h"
 #include "spectral/formats/material_import.h"
 #include "spectral/formats/material_write.h"

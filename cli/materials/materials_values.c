@@ -6,7 +6,6 @@
 #include "spectral/biaxial.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/materials/material_query.h"
-#include "spectral/wavelengths.h"
 
 #include <argp.h>
 #include <math.h>

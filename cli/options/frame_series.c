@@ -1,6 +1,5 @@
 #include "cli/options/frame_series.h"
 
-#include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "cli/base/arguments.h"

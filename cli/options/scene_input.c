@@ -5,7 +5,6 @@
 #include "base/maths.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "scenes/check/scene_doubts.h"
 #include "scenes/import/scene_file.h"

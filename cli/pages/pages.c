@@ -1,13 +1,11 @@
 #include "cli/pages/pages.h"
 
 #include "base/file.h"
-#include "cli/base/arguments.h"
 #include "cli/base/command.h"
 
 #include <ctype.h>
 #include <limits.h>
 #include <stdbool.h>
-#include <stdio.h>
 #include <string.h>
 
 /* A manual page in roff, from a command's option table. */

@@ -9,7 +9,6 @@
 
 #include "colorimetry/image/exr.h"
 #include "gl/accuracy/frame_times.h"
-#include "scenes/import/scene_file.h"
 
 #include <argp.h>
 #include <stdio.h>

@@ -4,7 +4,6 @@
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
 #include "cli/options/picture_options.h"
-#include "gl/accuracy/error_bars.h"
 #include "gl/plan/facts/render_desc.h"
 #include "scenes/volume/caustic_volume.h"
 

@@ -6,7 +6,6 @@
 #include "cli/trace/trace_request.h"
 
 #include "library/choice/finer_scene.h"
-#include "scenes/import/scene_file.h"
 #include "validation/trace/tracer/checkpoint.h"
 #include "validation/trace/tracer/trace_run.h"
 #include "validation/trace/tracer/tracer.h"

@@ -5,7 +5,6 @@
 #include "gl/plan/facts/render_desc.h"
 
 #ifdef ABBE_HAVE_VIEW
-#include "base/file.h"
 #include "cli/view/view_app.h"
 #include "cli/view/view_keep.h"
 #include "colorimetry/spectral_picture/pixel_probe.h"

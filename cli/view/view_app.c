@@ -2,7 +2,6 @@
 
 #include "base/clock.h"
 #include "cli/view/view_keep.h"
-#include "colorimetry/rgb_space.h"
 #include "colorimetry/screen/screen_png.h"
 
 #include <math.h>

@@ -2,7 +2,6 @@
 
 #include "base/number.h"
 #include "base/yaml/yaml.h"
-#include "cli/view/picture/view_show.h"
 #include "colorimetry/rgb_space.h"
 #include "scenes/import/scene_file.h"
 

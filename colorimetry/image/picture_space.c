@@ -1,7 +1,6 @@
 #include "colorimetry/image/picture_space.h"
 
 #include "colorimetry/image/rgb_encoding.h"
-#include "colorimetry/rgb_space.h"
 
 #include <math.h>
 #include <stdio.h>

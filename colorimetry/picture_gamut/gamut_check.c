@@ -3,8 +3,6 @@
 #include "base/maths.h"
 #include "colorimetry/chromaticity.h"
 #include "colorimetry/difference.h"
-#include "colorimetry/gamut.h"
-#include "colorimetry/image/picture_space.h"
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/image/rgb_encoding.h"
 #include "colorimetry/plot/chart.h"
@@ -12,7 +10,6 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* The CIE's diagrams of a picture's chromaticities. */
 

@@ -7,7 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { STEPS = 600, MAX_SERIES = 5 * ABBE_MATERIAL_CHART_MAX + 1, LABEL = 128 };
 

@@ -4,7 +4,6 @@
 #include "colorimetry/image/rgb_encoding.h"
 
 #include <setjmp.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include <jpeglib.h>

@@ -2,10 +2,8 @@
 
 #include "base/number.h"
 #include "colorimetry/observer_integral.h"
-#include "colorimetry/rgb_space.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

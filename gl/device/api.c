@@ -1,7 +1,6 @@
 #include "gl/device/api.h"
 
 #include <assert.h>
-#include <stdio.h>
 #include <string.h>
 
 abbe_result abbe_gl_load(abbe_gl_lookup lookup, abbe_gl *out, abbe_error *error) {

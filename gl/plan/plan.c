@@ -5,11 +5,9 @@
 #include "gl/plan/examine/light_views.h"
 #include "gl/plan/examine/models.h"
 #include "gl/plan/examine/spectral_needs.h"
-#include "gl/plan/facts/plan_facts.h"
 #include "gl/plan/support.h"
 #include "scenes/lights/environment_lights.h"
 #include "scenes/mesh/mesh.h"
-#include "scenes/scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,6 @@
 #include "colorimetry/rgb_space.h"
 
 #include "colorimetry/reflectance/reflected_light.h"
-#include "gl/device/bindings.h"
 #include "gl/device/float4.h"
 #include "gl/plan/examine/models.h"
 #include "gl/scene/gpu_scene.h"

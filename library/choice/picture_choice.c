@@ -4,7 +4,6 @@
 #include "base/number.h"
 #include "base/yaml/yaml.h"
 #include "gl/accuracy/frame_times.h"
-#include "gl/accuracy/preset.h"
 #include "gl/plan/plan.h"
 #include "library/choice/trace_times.h"
 

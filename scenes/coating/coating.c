@@ -3,7 +3,6 @@
 #include "spectral/materials/absorption.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 void abbe_coatings_free(abbe_coatings *c) {
   if (c == NULL) return;

@@ -1,7 +1,6 @@
 #include "scenes/cuts/cut_measures.h"
 
 #include <math.h>
-#include <string.h>
 
 #define ABBE_SIDE_NAME(code, name) name,
 static const char *const names[] = {ABBE_CUT_SIDES(ABBE_SIDE_NAME)};

@@ -5,7 +5,6 @@
 
 #include <libqhull_r/libqhull_r.h>
 
-#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>

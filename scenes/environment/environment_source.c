@@ -4,9 +4,7 @@
 #include "base/thread/watch.h"
 
 #include <assert.h>
-#include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* a, b of the gradation; c, d, e of the scattering [CIES011, table 1]. */
 static const double parameters[15][5] = {

@@ -6,7 +6,6 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 
 void abbe_irradiance_map_normal(size_t row, size_t column, double normal[3]) {
   const double theta = ABBE_PI * (double)row / (ABBE_IRRADIANCE_MAP_ROWS - 1);

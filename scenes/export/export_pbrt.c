@@ -5,7 +5,6 @@
 
 #include "base/maths.h"
 #include "base/number.h"
-#include "spectral/wavelengths.h"
 
 #include <math.h>
 

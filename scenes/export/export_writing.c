@@ -1,7 +1,6 @@
 #include "scenes/export/export_writing.h"
 
 #include "base/file.h"
-#include "base/maths.h"
 #include "base/number.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/reflectance/reflected_light.h"
@@ -11,7 +10,6 @@
 
 #include <ctype.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

@@ -3,7 +3,6 @@
 #include "scenes/import/scene_reading.h"
 
 #include "scenes/coating/coating.h"
-#include "scenes/geometry/transform.h"
 #include "scenes/import/scene_value.h"
 #include "spectral/microfacets.h"
 

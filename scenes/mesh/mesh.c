@@ -1,6 +1,5 @@
 #include "scenes/mesh/mesh.h"
 
-#include "base/maths.h"
 #include "scenes/geometry/disjoint_sets.h"
 #include "scenes/geometry/transform.h"
 #include "scenes/mesh/mesh_parts.h"

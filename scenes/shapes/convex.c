@@ -1,6 +1,5 @@
 #include "scenes/shapes/convex.h"
 
-#include "base/maths.h"
 #include "base/number.h"
 #include "base/thread/watch.h"
 #include "scenes/mesh/mesh_parts.h"

@@ -2,7 +2,6 @@
 #include "scenes/shapes/water.h"
 
 #include "base/maths.h"
-#include "base/number.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -7,7 +7,6 @@
 #include "scenes/import/mesh/gltf_material.h"
 #include "scenes/mesh/mesh.h"
 #include "spectral/formats/material_import.h"
-#include "spectral/wavelengths.h"
 
 #include <math.h>
 #include <stdio.h>

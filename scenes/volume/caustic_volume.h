@@ -68,12 +68,6 @@ void abbe_caustic_volume_free(abbe_caustic_volume *volume);
 /* Bytes of values or exits, in memory. */
 size_t abbe_caustic_volume_bytes(const abbe_caustic_volume *volume);
 
-/* Joins cells of every node within a tolerance of unit irradiance (volume_tree.h): each has the
- * joint value then. *bytes: what the joint values take. ABBE_INVALID_ARGUMENT as
- * abbe_volume_order_make, and for another than a vector volume. */
-abbe_result abbe_caustic_volume_join(abbe_caustic_volume *volume, double tolerance, size_t *bytes,
-                                     abbe_error *error);
-
 /* How a lookup that is left open is done: by turns of a ball, which they are exact for, and where
  * there is one node; else by three nodes, printed too. */
 abbe_volume_lookup abbe_caustic_volume_resolve(const abbe_caustic_volume *volume,
@@ -116,52 +110,5 @@ abbe_result abbe_volume_file_write(const char *path, const abbe_caustic_volume *
  * ABBE_PARSE for an attribute that is broken or does not go with the pixels, errors of
  * abbe_exr_read and abbe_volume_region_make. */
 abbe_result abbe_volume_file_read(const char *path, abbe_caustic_volume *out, abbe_error *error);
-
-/* The cells of a block of a volume joined where they hold nearly the same: several
- * resolutions in one [WymanHansenShirley2003].
- *
- * Neighbours are joined by fours in a shell and by eights in a grid, and what is joined again, as
- * long as no cell's value changes by more than a tolerance; the joint value is their mean by
- * volume, so that flux is kept. */
-
-/* An order of cells in which those that may be joined follow each other. */
-typedef struct abbe_volume_order {
-  size_t cells, branch; /* 4 or 8 that are joined at a time */
-  size_t levels;        /* how often at the most */
-  uint32_t *place;      /* [cells] of a cell */
-  double *volume;       /* [cells] by place, m3 */
-} abbe_volume_order;
-
-/* ABBE_INVALID_ARGUMENT where a grid or an octahedral map has not a power of two cells a side;
- * ABBE_NO_MEMORY. */
-abbe_result abbe_volume_order_make(const abbe_volume_region *region, abbe_volume_order *out,
-                                   abbe_error *error);
-void abbe_volume_order_free(abbe_volume_order *order);
-
-/* Leaves in the order of their places: leaf i begins at first[i], and ends where the next begins.
- */
-typedef struct abbe_volume_tree {
-  size_t leaves;
-  uint32_t *first; /* [leaves] */
-  uint16_t *value; /* [leaves][channels] halves */
-} abbe_volume_tree;
-
-/* Makes a tree of halves value[cells][channels], by cell. tolerance: at least 0; with 0 cells are
- * joined that are the same, and it gives every bit back. ABBE_NO_MEMORY. */
-abbe_result abbe_volume_tree_make(const abbe_volume_order *order, size_t channels,
-                                  const uint16_t *value, double tolerance, abbe_volume_tree *out,
-                                  abbe_error *error);
-void abbe_volume_tree_free(abbe_volume_tree *tree);
-
-/* The leaf of a cell. */
-size_t abbe_volume_tree_find(const abbe_volume_tree *tree, const abbe_volume_order *order,
-                             size_t cell);
-/* All cells again: value[cells][channels]. */
-void abbe_volume_tree_expand(const abbe_volume_tree *tree, const abbe_volume_order *order,
-                             size_t channels, uint16_t *value);
-/* Bytes that it takes. */
-static inline size_t abbe_volume_tree_bytes(const abbe_volume_tree *tree, size_t channels) {
-  return tree->leaves * (sizeof *tree->first + channels * sizeof *tree->value);
-}
 
 #endif

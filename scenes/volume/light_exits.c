@@ -3,7 +3,6 @@
 #include "base/maths.h"
 #include "colorimetry/weights.h"
 #include "scenes/volume/half.h"
-#include "scenes/volume/sphere_mesh.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,6 @@
 #include "spectral/dispersion/dispersion.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <string.h>
 
 void abbe_dispersion_free(abbe_dispersion *dispersion) {

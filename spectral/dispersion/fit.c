@@ -5,7 +5,6 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit.h>
 #include <math.h>
-#include <string.h>
 
 /* The Cauchy form is linear: it is solved in Chebyshev polynomials of t, which runs from -1 to 1
  * as x = L^-2 runs over the points, and then written out in powers of x. */

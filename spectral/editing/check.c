@@ -2,7 +2,6 @@
 
 #include "base/number.h"
 #include "spectral/dispersion/fit.h"
-#include "spectral/editing/check_parts.h"
 #include "spectral/wavelengths.h"
 
 #include <assert.h>

@@ -4,7 +4,6 @@
 #include "spectral/wavelengths.h"
 
 #include <math.h>
-#include <stdio.h>
 
 static const double LOW = ABBE_WAVELENGTH_MIN_NM, HIGH = ABBE_WAVELENGTH_MAX_NM;
 

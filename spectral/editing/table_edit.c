@@ -3,14 +3,11 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text_diff.h"
-#include "base/yaml/yaml_edit.h"
 #include "base/yaml/yaml_edit_text.h"
 #include "spectral/editing/check.h"
 #include "spectral/formats/material_import.h"
-#include "spectral/materials/material_table.h"
 #include "spectral/store/material_store.h"
 
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

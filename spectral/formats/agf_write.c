@@ -9,7 +9,6 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <string.h>
 #include <strings.h>
 
 /* What a catalogue has no place for, and what it takes in another dress. */

@@ -5,7 +5,6 @@
 #include "spectral/formats/material_write.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/materials/convert.h"
-#include "spectral/wavelengths.h"
 
 #include <ctype.h>
 #include <math.h>

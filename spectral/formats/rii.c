@@ -1,6 +1,5 @@
 #include "spectral/formats/material_import.h"
 
-#include "base/file.h"
 #include "base/html_text.h"
 #include "base/number.h"
 #include "base/yaml/yaml.h"

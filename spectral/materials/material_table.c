@@ -4,7 +4,6 @@
 #include "base/yaml/yaml.h"
 #include "spectral/materials/record_reading.h"
 
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

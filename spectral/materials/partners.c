@@ -1,7 +1,5 @@
 #include "spectral/materials/partners.h"
 
-#include "spectral/dispersion/index_points.h"
-#include "spectral/materials/material_query.h"
 #include "spectral/wavelengths.h"
 
 #include <math.h>

@@ -2,7 +2,6 @@
 
 #include "base/maths.h"
 #include "scenes/volume/half.h"
-#include "validation/lab/lone_object.h"
 #include "validation/lab/volume_sums.h"
 
 #include <omp.h>

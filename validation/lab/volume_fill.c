@@ -48,10 +48,9 @@ static abbe_result check_counts(const abbe_volume_fill_desc *d, abbe_error *erro
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%zu photons a pass, %zu passes; at most %u and %d", d->photons,
                           d->passes, ABBE_VOLUME_FILL_MOST_PHOTONS, ABBE_VOLUME_FILL_MOST_PASSES);
-  if (d->exits > 0 && (d->joins || d->kind == ABBE_VOLUME_PRINTED))
+  if (d->exits > 0 && d->kind == ABBE_VOLUME_PRINTED)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "exits are rays at nodes: they go with no joint cells, and are not "
-                          "printed");
+                          "exits are rays at nodes: they are not printed");
   return ABBE_OK;
 }
 
@@ -434,7 +433,6 @@ static abbe_result fill_nodes(fill *f, abbe_error *error) {
 
 /* Sums at all nodes, and what becomes of them. */
 static abbe_result fill_values(fill *f, abbe_error *error) {
-  const abbe_volume_fill_desc *d = &f->desc;
   abbe_volume_fill_statistics *s = f->statistics;
   abbe_caustic_volume *v = f->volume;
   abbe_result result = make_tables(f, error);
@@ -443,8 +441,6 @@ static abbe_result fill_values(fill *f, abbe_error *error) {
                  ? sqrt(s->error / (double)v->nodes.count)
                  : NAN;
   if (!isnan(s->error)) v->error = s->error;
-  if (result == ABBE_OK && d->joins)
-    result = abbe_caustic_volume_join(v, d->tolerance, &s->joint_bytes, error);
   return result;
 }
 

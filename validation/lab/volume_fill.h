@@ -26,8 +26,6 @@ typedef struct abbe_volume_fill_desc {
   abbe_region_desc region; /* without sizes: 24 shells of 5120 triangles, for exits of
                               48 x 48 texels; outer 0: three radii of
                               the object, inner 0: just below its surface */
-  bool joins;              /* cells are joined within the tolerance (volume_tree.h) */
-  double tolerance;        /* tolerance of unit irradiance; 0: those that are the same */
   size_t photons;          /* a node and pass; 0: 2^18 */
   size_t passes;           /* 0: 4 */
   double until_error;      /* above 0: more passes, until a node's relative error is below */
@@ -45,9 +43,8 @@ typedef struct abbe_volume_fill_desc {
 typedef struct abbe_volume_fill_statistics {
   size_t passes; /* passes of all nodes */
   uint64_t photons;
-  size_t joint_bytes; /* that the joint values take; else 0 */
-  double seconds;     /* wall time */
-  double carried;     /* for exits: see abbe_exit_fill_statistics, whose rays photons is */
+  double seconds; /* wall time */
+  double carried; /* for exits: see abbe_exit_fill_statistics, whose rays photons is */
   double alone;
   size_t sequences, maps;
   double error; /* relative standard error, root mean square over nodes; NaN of a pass */

@@ -4,7 +4,6 @@
 #include "base/file.h"
 #include "base/maths.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

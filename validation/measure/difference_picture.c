@@ -4,7 +4,6 @@
 #include "colorimetry/plot/chart.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 

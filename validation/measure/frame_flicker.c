@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 void abbe_frame_flicker_free(abbe_frame_flicker *f) {
   if (f == NULL) return;

@@ -1,7 +1,6 @@
 #include "validation/measure/outline.h"
 
 #include "base/maths.h"
-#include "colorimetry/image/image.h"
 #include "colorimetry/rgb_space.h"
 #include "validation/measure/field.h"
 

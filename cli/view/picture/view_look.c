@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static bool goes_on(void *user, double done) {
   const volatile int *stop = user;

@@ -1,7 +1,6 @@
 #include "cli/view/state/view_state.h"
 
 #include "base/maths.h"
-#include "base/number.h"
 #include "cli/view/state/view_camera.h"
 #include "scenes/import/scene_value.h"
 

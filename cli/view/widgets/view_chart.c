@@ -6,7 +6,6 @@
 #include "colorimetry/rgb_space.h"
 
 #include <math.h>
-#include <stdio.h>
 
 #define FRAME 0x3a404a
 #define DIM 0x858b95

@@ -1,7 +1,6 @@
 #include "gl/methods/wyman2006/wyman2006.h"
 
 #include "base/maths.h"
-#include "scenes/geometry/transform.h"
 
 #include <math.h>
 #include <stdio.h>

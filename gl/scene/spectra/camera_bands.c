@@ -6,7 +6,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* From so many wavelengths on bands are joined first; where bands have parts, from so many on
  * samples take every second one: half of fewer has too few parts. */

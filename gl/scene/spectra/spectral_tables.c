@@ -1,6 +1,5 @@
 #include "gl/scene/spectra/spectral_tables.h"
 
-#include "colorimetry/weights.h"
 #include "gl/device/float4.h"
 #include "gl/plan/examine/spectral_needs.h"
 #include "gl/scene/spectra/band_parts.h"
@@ -8,7 +7,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { HALF_STEPS = 32 };
 

@@ -1,7 +1,6 @@
 #include "scenes/volume/exits/exit_pages.h"
 
 #include "base/maths.h"
-#include "scenes/volume/exits/exit_light.h"
 
 #include <assert.h>
 #include <math.h>

@@ -332,9 +332,9 @@ TEST(requests) {
   abbe_volume_fill_desc desc = {.object = 1, .exits = 10, .nodes = 1};
   REFUSED(ABBE_INVALID_ARGUMENT, "nodes", abbe_volume_fill(&scene, &desc, &v, &done, &error));
   desc.nodes = 12;
-  desc.joins = true;
-  REFUSED(ABBE_INVALID_ARGUMENT, "joint", abbe_volume_fill(&scene, &desc, &v, &done, &error));
-  desc.joins = false;
+  desc.kind = ABBE_VOLUME_PRINTED;
+  REFUSED(ABBE_INVALID_ARGUMENT, "printed", abbe_volume_fill(&scene, &desc, &v, &done, &error));
+  desc.kind = ABBE_VOLUME_VECTOR;
   desc.progress = stop_at_once;
   desc.user = &calls;
   REFUSED(ABBE_CANCELLED, "", abbe_volume_fill(&scene, &desc, &v, &done, &error));

@@ -1,6 +1,5 @@
 #include "validation/lab/known/known_group.h"
 
-#include "base/maths.h"
 #include "base/number.h"
 #include "scenes/import/scene_file.h"
 

@@ -6,7 +6,6 @@
 #include "base/number.h"
 
 #include <math.h>
-#include <stdio.h>
 
 typedef struct work {
   double from, to; /* range of the group */

@@ -7,7 +7,6 @@
 #include "validation/lab/known/known_light.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* Panes under a slanting beam: what they reflect and pass with all reflections inside, clear,

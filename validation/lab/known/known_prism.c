@@ -2,7 +2,6 @@
 #include "validation/lab/known/forms/closed_form.h"
 #include "validation/lab/known/known_group.h"
 
-#include "base/maths.h"
 #include "base/number.h"
 #include "spectral/dispersion/dispersion.h"
 

@@ -8,7 +8,6 @@
 #include "spectral/dispersion/dispersion.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #define WAVELENGTH 0.1 /* m */

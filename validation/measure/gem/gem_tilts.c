@@ -2,7 +2,6 @@
 
 #include "base/maths.h"
 #include "colorimetry/difference.h"
-#include "validation/measure/gem/gem_light.h"
 #include "validation/measure/gem/gem_view.h"
 
 #include <math.h>
