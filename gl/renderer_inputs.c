@@ -47,6 +47,29 @@ static uint64_t mix_medium(uint64_t h, const abbe_medium *m) {
   return h;
 }
 
+/* Films by their layers over the plan's wavelengths. */
+static uint64_t mix_coatings(uint64_t h, const abbe_coatings *c, const abbe_plan *plan) {
+  enum { AT = 16 };
+  const size_t count = c != NULL ? c->count : 0;
+  MIX(h, count);
+  for (size_t i = 0; i < count; i++)
+    for (int k = 0; k < AT; k++) {
+      abbe_film_layer layer[ABBE_FILM_MOST_LAYERS] = {{0}};
+      abbe_coating_at(&c->coating[i],
+                      plan->desc.min_nm + (plan->desc.max_nm - plan->desc.min_nm) * k / (AT - 1),
+                      layer, NULL);
+      h = abbe_digest(h, layer, c->coating[i].count * sizeof *layer);
+    }
+  return h;
+}
+
+/* Which face has which film. */
+static uint64_t mix_coated(uint64_t h, const abbe_coatings *c) {
+  const bool apart = c != NULL && c->face != NULL, there = c != NULL;
+  MIX(h, there);
+  return apart ? abbe_digest_array(h, c->face, c->face_count, sizeof *c->face) : h;
+}
+
 static uint64_t mix_shape(uint64_t h, const abbe_object *o) {
   const abbe_mesh *m = &o->mesh;
   const abbe_exact *e = &o->exact;
@@ -61,7 +84,7 @@ static uint64_t mix_shape(uint64_t h, const abbe_object *o) {
   h = abbe_digest_array(h, e->parallelogram, e->count, sizeof *e->parallelogram);
   MIX(h, o->min);
   MIX(h, o->max);
-  return h;
+  return mix_coated(h, o->coatings);
 }
 
 /* Surfaces, of which kind, which share a material, and the models that the plan chose. */
@@ -148,7 +171,9 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
     MIX(h, o->brushing.centre);
     if (material != NULL) h = mix_material(h, material);
     h = mix_medium(h, o->medium);
-    MIX(h, o->min); /* how long paths through it are */
+    h = mix_coatings(h, o->coatings, plan);
+    if (o->coatings != NULL) h = mix_shape(h, o); /* films are looked up by plane */
+    MIX(h, o->min);                               /* how long paths through it are */
     MIX(h, o->max);
   }
   h = mix_illuminants(h, scene, plan);
@@ -168,6 +193,7 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
   MIX(h, plan->absorbing);
   MIX(h, plan->tinting);
   MIX(h, plan->colouring);
+  MIX(h, plan->filmed);
   return h;
 }
 

@@ -82,5 +82,6 @@
 #define UNIT_SHAFTS 17
 #define UNIT_BAND_TEXELS 18
 #define UNIT_SEEN_RECEIVERS 19
+#define UNIT_FILMS 20
 
 #endif

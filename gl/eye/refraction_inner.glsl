@@ -70,7 +70,7 @@ vec3 through(Hit front, vec3 d) {
   float per_m = spectrum.y, least_per_m = per_m;
 #define WEIGHT_AFTER(metres) (exp(-per_m * (metres)) * band_weight)
 #endif
-  InnerRay ray = InnerRay(front.p, d, front.facet, 1.0 - fresnel(-dot(d, front.n), 1.0 / n));
+  InnerRay ray = InnerRay(front.p, d, front.facet, face_shares(refractor, front.facet, true, -dot(d, front.n), n).y);
   vec3 light = vec3(0);
 #ifdef KEEPS_SIGHTS
   sight_tail = vec3(0);
@@ -95,7 +95,7 @@ vec3 through(Hit front, vec3 d) {
 #ifdef KEEPS_SPREAD
       outside = spread_outside(h, ray.p, ray.d, n, within);
 #endif
-      leaving = leave(h, n, ray);
+      leaving = leave(refractor, h, n, ray);
       shows = leaving.share > 0.5 * limit;
       order++;
       float further = ray.share < limit || order == counts.exits ? ray.share : 0.0;

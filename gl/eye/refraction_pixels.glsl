@@ -3,7 +3,7 @@
 // XYZ of what a band shows through the first interface; the share that is mirrored there.
 vec3 band_light(int band, out float mirrored) {
   take_band(band_set, band - first_band(refractor));
-  mirrored = fresnel(-dot(sight, front.n), 1.0 / bands[band].weight_n.w);
+  mirrored = face_shares(refractor, front.facet, true, -dot(sight, front.n), bands[band].weight_n.w).x;
   return through(front, sight);
 }
 

@@ -81,7 +81,8 @@ vec3 band_light(int band, bool in_mirror, bool both, out float mirrored) {
 #else
   const bool off_mirror = false;
 #endif
-  if (off_mirror || !split(w, first, reflected)) reflected.share = 0.0;
+  float absorbed;
+  if (off_mirror || !split(w, first, reflected, absorbed)) reflected.share = 0.0;
 #ifdef MIRRORS
   if (off_mirror) w = off;
 #endif

@@ -146,6 +146,9 @@ bool is_told_by_layer(ivec2 at) {
   vec4 layer = texelFetch(eye_layers, ivec3(at, 0), 0);
   first.hit = Hit(eye + layer.w * sight, normalize(layer.xyz), layer.w, refractor, -1);
   first.face_n = first.hit.n;
+#ifdef FILMS
+  first.film = film_on(refractor, -1);
+#endif
   return true;
 }
 #else

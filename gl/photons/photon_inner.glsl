@@ -58,12 +58,17 @@ struct Inside {
 };
 
 // What leaves at interface `order`. Returns the share that is lost.
-float keep_outgoing(PhotonRay photon, Outgoing o, int order, uint path, Inside inside) {
+float keep_outgoing(PhotonRay photon, Outgoing o, int facet, int order, uint path, Inside inside) {
   ReceiverHit to = meet_receiver(o.p, o.d, -touch * refractor_bounds.w, 1e30);
   uint signature = signature_of(path * 31u + to.receiver, to, uint(photon.front.refractor));
   float left = outside_left(photon, o.p, o.d, to);
+#ifdef FILMS
+  bool bare = film_on(photon.front.refractor, facet) == BARE;  // else its transmission is not Fresnel's
+#else
+  const bool bare = true;
+#endif
   PhotonHit hit = clear_hit(order, to.place, o.share * photon.flux * left, signature,
-                            vec4(o.p, interface_word(o.n, true, to.tile)));
+                            vec4(o.p, interface_word(o.n, bare, to.tile)));
 #ifdef TINTS
   add_tint(hit.tints, inside.attenuation.tint, inside.metres);
 #endif
@@ -109,11 +114,18 @@ void trace(PhotonRay photon, out Shares entry[5]) {
   Hit front = photon.front;
   int r = front.refractor;
   vec2 spectrum = spectra[r * counts.wavelengths + photon.wavelength].xy;
-  float n = spectrum.x, per_m = spectrum.y, reflected = fresnel(-dot(photon.d, front.n), 1.0 / n);
+  float n = spectrum.x, per_m = spectrum.y;
+#ifdef FILMS
+  film_row = photon.wavelength;
+#endif
+  vec2 shares = face_shares(r, front.facet, true, -dot(photon.d, front.n), n);
   uint path = uint(r) * 131u + uint(front.facet);
   entry[REACHED] = Shares(1.0);
-  entry[REFLECTED] = Shares(mirror(photon, path, reflected));
-  InnerRay ray = InnerRay(front.p, photon.d, front.facet, 1.0 - reflected);
+  entry[REFLECTED] = Shares(mirror(photon, path, shares.x));
+  InnerRay ray = InnerRay(front.p, photon.d, front.facet, shares.y);
+#ifdef FILMS
+  entry[ABSORBED] = Shares(1.0 - shares.x - shares.y);
+#endif
   if (!refract_direction(photon.d, front.n, 1.0 / n, ray.d)) return;
   Inside inside;
   inside.left = Shares(1.0);
@@ -128,12 +140,18 @@ void trace(PhotonRay photon, out Shares entry[5]) {
       InnerHit h = next_inner_hit(r, ray);
       entry[ABSORBED] += absorb(distance(h.p, ray.p), per_m, ray, inside);
       path = path * 31u + uint(h.facet) + 1u;
-      leaving = leave(h, n, ray);
+#ifdef FILMS
+      float before = ray.share;
+#endif
+      leaving = leave(r, h, n, ray);
+#ifdef FILMS
+      entry[ABSORBED] += (before - ray.share - leaving.share) * inside.left;
+#endif
       ends = most_left(ray, inside) < share_limit;
       order++;
       if (!GO_ON || leaving.share > 0.0 || ends) break;
     }
-    if (leaving.share > 0.0) entry[MISSED] += keep_outgoing(photon, leaving, order - 1, path, inside) * inside.left;
+    if (leaving.share > 0.0) entry[MISSED] += keep_outgoing(photon, leaving, ray.facet, order - 1, path, inside) * inside.left;
     if (ends) break;
   }
   entry[TRAPPED] += ray.share * inside.left;

@@ -90,6 +90,9 @@ void keep_way(PhotonRay photon, PathState w, float length_m, uint ends, uint own
 void trace(PhotonRay photon, out Shares entry[5]) {
   for (int k = 0; k < 5; k++) entry[k] = Shares(0.0);
   wavelength = photon.wavelength;
+#ifdef FILMS
+  film_row = wavelength;
+#endif
   vec3 o = photon.o, d = photon.d;
   PathState w = path_from(o, d);
   for (int k = 0; k < PENDING; k++) {
@@ -135,7 +138,10 @@ void trace(PhotonRay photon, out Shares entry[5]) {
       Shares left = left_of(w), before = w.share * left;
       branch(w, h, 0.0, ended, dropped, absorbed);
       e.trapped += (ended + dropped) * left;
-      if (is_mirror(h.hit.refractor)) e.absorbed += before - w.share * left_of(w);
+      if (is_mirror(h.hit.refractor))
+        e.absorbed += before - w.share * left_of(w);
+      else
+        e.absorbed += absorbed * left;
     } else {
       end_path(photon, w, to, owner, used, e);
       w.share = 0.0;

@@ -1,4 +1,5 @@
 #include "gl/scene/gpu_scene.h"
+#include "gl/scene/spectra/camera_bands.h"
 
 #include "base/maths.h"
 #include "base/thread/watch.h"
@@ -183,6 +184,8 @@ typedef struct grove {
   const abbe_mesh **mesh;
   uint32_t *surface, *face_first; /* for each mesh; face_first has one more */
   const int32_t **side;           /* sides of each mesh's faces (gpu_scene.h), or NULL */
+  const abbe_coatings *films;     /* of the one mesh, or NULL; the first has number first_film */
+  uint32_t first_film;
   size_t mesh_count;
   uint32_t *owner, *part; /* for each face: its mesh, and which part */
 } grove;
@@ -204,6 +207,8 @@ static void store_triangle(const grove *g, uint32_t face, gpu_triangle *t, gpu_c
   }
   store_bits(g->part[face], &t->corner[3]);
   store_bits(g->surface[m], &t->edge[0][3]);
+  const uint32_t film = g->films == NULL ? 0 : g->films->face == NULL ? 1 : g->films->face[face];
+  if (film > 0) store_bits(g->first_film + film, &t->edge[1][3]); /* 0: bare */
   if (g->side[m] != NULL)
     store_bits((uint32_t)g->side[m][face - g->face_first[m]] / 2, &t->edge[1][3]);
   memset(c->v_part, 0, sizeof c->v_part);
@@ -317,6 +322,7 @@ static abbe_result grow_refractors(abbe_gpu_scene *scene, grove *g, forest *f, a
   for (size_t i = 0; i < scene->plan->refractor_count && result == ABBE_OK; i++) {
     if (scene->plan->model[i] != ABBE_REFRACTOR_BVH) continue;
     g->mesh_count = 0;
+    g->films = abbe_film_tables_of(scene->local, scene->plan, i, &g->first_film);
     result = add_mesh(g, f, &scene->local->object[scene->plan->refractor_object[i]].mesh, 0, NULL,
                       error);
     if (result == ABBE_OK) result = grow(scene, g, f, &scene->refractor_root[i], error);
@@ -329,6 +335,7 @@ static abbe_result grow_receivers(abbe_gpu_scene *scene, grove *g, forest *f, ab
   abbe_result result = ABBE_OK;
   if (scene->plan->receivers != ABBE_RECEIVER_BVH) return ABBE_OK;
   g->mesh_count = 0;
+  g->films = NULL;
   for (size_t i = 0; i < scene->plan->receiver_count && result == ABBE_OK; i++) {
     const abbe_mesh *mesh = &scene->local->object[scene->plan->receiver_object[i]].mesh;
     const int32_t *side = scene->charts.face_side != NULL

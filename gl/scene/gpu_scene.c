@@ -207,6 +207,8 @@ void abbe_gpu_scene_free(abbe_gpu_scene *scene, unsigned parts) {
     abbe_gpu_drop_buffers(scene->gpu, 1, &scene->bands);
     abbe_gpu_drop_buffers(scene->gpu, 1, &scene->band_texels);
     abbe_gpu_drop_textures(scene->gpu, 1, &scene->band_texels_texture);
+    abbe_gpu_drop_buffers(scene->gpu, 1, &scene->film_texels);
+    abbe_gpu_drop_textures(scene->gpu, 1, &scene->film_texels_texture);
     abbe_spectral_tables_free(&scene->tables);
   }
 }
@@ -233,7 +235,8 @@ void abbe_gpu_scene_bind(const abbe_gpu_scene *scene) {
   } texels[] = {{UNIT_BVH_NODES, scene->bvh_texture[0]},
                 {UNIT_BVH_TRIANGLES, scene->bvh_texture[1]},
                 {UNIT_BVH_CORNERS, scene->bvh_texture[2]},
-                {UNIT_BAND_TEXELS, scene->band_texels_texture}};
+                {UNIT_BAND_TEXELS, scene->band_texels_texture},
+                {UNIT_FILMS, scene->film_texels_texture}};
   for (size_t i = 0; i < sizeof texels / sizeof *texels; i++) {
     if (texels[i].texture == 0) continue;
     gl->ActiveTexture(GL_TEXTURE0 + texels[i].unit);

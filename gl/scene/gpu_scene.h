@@ -105,6 +105,7 @@ typedef struct abbe_gpu_scene {
   GLuint refractors, planes, receivers, surfaces, reflections, spectra, bands, shadows;
   GLuint surface_texture;
   GLuint band_texels, band_texels_texture; /* of camera_bands.h */
+  GLuint film_texels, film_texels_texture; /* the same; 0: no films are drawn */
   GLuint band_reflections;                 /* 0: no dispersed light falls on receivers in colours */
   abbe_gpu_environment environment;
   size_t band_count, band_levels; /* for one refractor: samples, and samples joined by twos */

@@ -63,7 +63,29 @@ static abbe_result upload_bands(abbe_gpu_scene *scene, abbe_error *error) {
   return result;
 }
 
+static abbe_result upload_films(abbe_gpu_scene *scene, abbe_error *error) {
+  const size_t texels = abbe_film_tables_texels(scene->local, scene->plan);
+  if (!scene->plan->filmed) return ABBE_OK;
+  GLint most = 0;
+  scene->gpu->gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  if (texels > (size_t)most)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "films take %zu texels in a buffer; this OpenGL reads at most %d: take "
+                          "fewer coatings or wavelengths",
+                          texels, most);
+  float(*texel)[4] = calloc(texels, sizeof *texel);
+  if (texel == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for films");
+  abbe_result result =
+      abbe_film_tables_fill(scene->local, scene->plan, &scene->tables, texel, error);
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_texels(scene->gpu, GL_RGBA32F, texels * sizeof *texel, texel, UNIT_FILMS,
+                                  &scene->film_texels, &scene->film_texels_texture, error);
+  free(texel);
+  return result;
+}
+
 abbe_result abbe_gpu_spectra_upload(abbe_gpu_scene *scene, abbe_error *error) {
   abbe_result result = upload_spectra(scene, error);
-  return result == ABBE_OK ? upload_bands(scene, error) : result;
+  if (result == ABBE_OK) result = upload_bands(scene, error);
+  return result == ABBE_OK ? upload_films(scene, error) : result;
 }

@@ -26,6 +26,7 @@
   X(receiver_hierarchy, RECEIVER_HIERARCHY, p->receivers == ABBE_RECEIVER_BVH)                     \
   X(absorbing, ABSORBING, p->absorbing)                                                            \
   X(band_parts, BAND_PARTS, p->band_parts)                                                         \
+  X(films, FILMS, p->filmed)                                                                       \
   X(textured, TEXTURED, p->textured)                                                               \
   X(environment, ENVIRONMENT, scene->environment.texture != 0)                                     \
   X(caustics, CAUSTICS, p->caustics)                                                               \

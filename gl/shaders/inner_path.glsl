@@ -36,13 +36,23 @@ InnerHit next_inner_hit(int r, InnerRay ray) {
   return h;
 }
 
-// What leaves where the ray meets the interface of a solid of index n; the rest goes on in the ray.
-Outgoing leave(InnerHit h, float n, inout InnerRay ray) {
+// Shares of light that a facet of refractor r, of index n, reflects and passes.
+vec2 face_shares(int r, int facet, bool outside, float cos_i, float n) {
+#ifdef FILMS
+  int film = film_on(r, facet);
+  if (film != BARE) return film_shares(film, outside, cos_i, n);
+#endif
+  float reflected = fresnel(cos_i, outside ? 1.0 / n : n);
+  return vec2(reflected, 1.0 - reflected);
+}
+
+// What leaves where the ray meets the interface of refractor r, of index n; the rest goes on in the ray.
+Outgoing leave(int r, InnerHit h, float n, inout InnerRay ray) {
   Outgoing o = Outgoing(h.p, h.n, ray.d, 0.0);
-  float kept = fresnel(dot(ray.d, h.n), n);
+  vec2 shares = face_shares(r, h.facet, false, dot(ray.d, h.n), n);
   bool leaves = refract_direction(ray.d, -h.n, n, o.d);
-  o.share = leaves ? ray.share * (1.0 - kept) : 0.0;
-  ray.share *= leaves ? kept : 1.0;
+  o.share = leaves ? ray.share * shares.y : 0.0;
+  ray.share *= shares.x;
   ray.p = h.p;
   ray.facet = h.facet;
   ray.d = reflect(ray.d, h.n);

@@ -48,6 +48,13 @@ bool refract_direction(vec3 d, vec3 n, float eta, out vec3 t) {
   return true;
 }
 
+// An interpolated normal may send light to the wrong side of its face, of unit normal `face_n`: it
+// is bent until it runs just along the side wanted.
+vec3 keep_side(vec3 face_n, vec3 d) {
+  float along = dot(d, face_n);
+  return along > 0.0 ? d : normalize(d + (1e-3 - along) * face_n);
+}
+
 #ifdef ROUGH
 // GGX's facets, as spectral/microfacets.h has them: a is their roughness along x and y; directions away from
 // the surface, z its normal.

@@ -125,3 +125,37 @@ bool inner_hit(int r, int facet, vec3 p, vec3 d, out vec3 q, out vec3 n, out int
 #endif
   return false;
 }
+
+#ifdef FILMS
+// Thin films on faces of refractors (gl/scene/spectra/camera_bands.h): shares of unpolarised light, by the angle in
+// air. Who follows a wavelength or a band sets film_row.
+layout(binding = UNIT_FILMS) uniform samplerBuffer film_texels;
+int film_row;
+const int BARE = -1;
+
+// The film on a facet that is known by its number.
+int film_on(int r, int facet) {
+  int whole = int(texelFetch(film_texels, r).x);
+  if (whole >= BARE) return whole;
+  return facet < 0 ? BARE : int(texelFetch(film_texels, REFRACTORS + refractors[r].info.y + facet).x);
+}
+
+// What it reflects, and what it passes, of light that comes to a refractor of index n from outside, or from inside.
+vec2 film_shares(int film, bool outside, float cos_i, float n) {
+  float c = clamp(cos_i, 0.0, 1.0), in_air = outside ? c * c : cos2_refracted(c, n);
+  float beyond2 = clamp(-in_air / ((n - 1.0) * (n + 1.0)), 0.0, 1.0);  // of total reflection
+  float x = float(FILM_ANGLES) * (1.0 + (in_air > 0.0 ? sqrt(min(in_air, 1.0)) : -sqrt(beyond2) / (1.0 + sqrt(1.0 - beyond2))));
+  int at = clamp(int(x), 0, 2 * FILM_ANGLES - 1);
+  int row = film * (counts.wavelengths + BAND_SETS * counts.bands) + film_row;
+  int texel = REFRACTORS + PLANE_ROOM + row * (2 * FILM_ANGLES + 1) + at;
+  vec4 shares = mix(texelFetch(film_texels, texel), texelFetch(film_texels, texel + 1), x - float(at));
+  return vec2(outside ? shares.x : shares.y, shares.z);
+}
+
+// The share that it reflects, and the one that it absorbs; passes: not all is reflected by Snell's law.
+float film_reflects(int film, bool outside, float cos_i, float n, bool passes, out float absorbed) {
+  vec2 shares = film_shares(film, outside, cos_i, n);
+  absorbed = max(1.0 - shares.x - (passes ? shares.y : 0.0), 0.0);
+  return shares.x;
+}
+#endif

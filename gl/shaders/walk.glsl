@@ -44,6 +44,9 @@ struct PathState {
 struct Interface {
   Hit hit;      // n: interpolated, outwards
   vec3 face_n;  // normal of the face itself, outwards
+#ifdef FILMS
+  int film;
+#endif
 #ifdef KEEPS_SPREAD
   mat3 bend;    // how the normal turns along the face, 1/m
 #endif
@@ -260,19 +263,19 @@ bool next_interface(PathState w, inout Interface h) {
     h.hit.refractor = owner;
   }
 #endif
+#ifdef FILMS
+  h.film = found ? film_on(h.hit.refractor, h.hit.facet) : BARE;
+#ifdef HIERARCHY
+  if (owner >= 0) h.film = floatBitsToInt(hierarchy_triangle(3 * triangle.triangle + 2).w) - 1;
+#endif
+#endif
   return found;
 }
 
-// An interpolated normal may send light to the wrong side of its face, of unit normal `face_n`: it
-// is bent until it runs just along the side wanted.
-vec3 keep_side(vec3 face_n, vec3 d) {
-  float along = dot(d, face_n);
-  return along > 0.0 ? d : normalize(d + (1e-3 - along) * face_n);
-}
-
-// Both branches from an interface that w comes to; their shares add up to w's. False where the
-// medium does not change: w goes on behind it.
-bool split(inout PathState w, Interface h, out PathState mirrored) {
+// Both branches from an interface that w comes to; with what a film absorbs their shares add up to w's. False
+// where the medium does not change: w goes on behind it.
+bool split(inout PathState w, Interface h, out PathState mirrored, out float absorbed) {
+  absorbed = 0.0;
   int r = h.hit.refractor;
   uint after = w.inside ^ 1u << r;
   bool entering = (w.inside >> r & 1u) == 0u;
@@ -290,7 +293,14 @@ bool split(inout PathState w, Interface h, out PathState mirrored) {
   if (dot(w.d, n) >= 0.0) n = face_n;
   float reflected = fresnel(-dot(w.d, n), eta);
   vec3 through;
-  if (!refract_direction(w.d, n, eta, through)) reflected = 1.0;
+  bool passes = refract_direction(w.d, n, eta, through), bare = true;
+  if (!passes) reflected = 1.0;
+#ifdef FILMS
+  // Tables have films between their refractor and air.
+  bare = h.film == BARE || (mirrored.inside | after) != 1u << r;
+  if (!bare) reflected = film_reflects(h.film, entering, -dot(w.d, n), entering ? 1.0 / eta : eta, passes, absorbed);
+  absorbed *= w.share;
+#endif
 #ifdef KEEPS_SPREAD
   mat3 bend = entering ? h.bend : -h.bend;
   mirrored.spread = spread_mirrored(w.spread, w.d, n, bend);
@@ -299,11 +309,11 @@ bool split(inout PathState w, Interface h, out PathState mirrored) {
   mirrored.d = keep_side(face_n, reflect(w.d, n));
   w.d = keep_side(-face_n, through);
   mirrored.share *= reflected;
-  w.share -= mirrored.share;
+  w.share = passes ? w.share - mirrored.share - absorbed : 0.0;
   w.interfaces = mirrored.interfaces = w.interfaces + 1;
 #ifdef KEEPS_INTERFACE
   w.interface_n = mirrored.interface_n = n;
-  w.transmitted = true;
+  w.transmitted = bare;  // by Fresnel's law
   mirrored.transmitted = false;
 #endif
   w.path = w.path * 31u + uint(r * 2) + uint(h.hit.facet) * 7u + 1u;
@@ -463,7 +473,7 @@ bool reflects_on(PathState mirrored) {
 
 // At an interface: the stronger branch is left in w, the other waits, and of both only what carries
 // `least`. Of what is not followed: the share that ends here, the one that gives its place up, and what a
-// mirror absorbs. A mirror has one branch, which goes on whatever it carries.
+// mirror or a film absorbs. A mirror has one branch, which goes on whatever it carries.
 void branch(inout PathState w, Interface h, float least, out float ended, out float dropped, out float absorbed) {
   PathState mirrored;
   ended = dropped = absorbed = 0.0;
@@ -473,7 +483,7 @@ void branch(inout PathState w, Interface h, float least, out float ended, out fl
     return;
   }
 #endif
-  if (!split(w, h, mirrored)) return;
+  if (!split(w, h, mirrored, absorbed)) return;
   bool reflects = reflects_on(mirrored), passes = w.share >= least;
   ended = (reflects ? 0.0 : mirrored.share) + (passes ? 0.0 : w.share);
   if (!reflects) mirrored.share = 0.0;

@@ -52,6 +52,7 @@ static agreement compare(const char *text, int passes) {
     found.light += b[i];
   }
   assert_true(found.light > 0);
+  assert_true(abbe_ledger_imbalance(&statistics.energy) < 1e-4);
   found.energy = light / found.light;
   found.apart /= found.light;
   found.trapped = statistics.energy.trapped / found.light;
@@ -158,12 +159,13 @@ TEST(parts_of_one_stuff_have_no_wall) {
 
 /* The whole frame shows a brilliant of diamond's index on paper that ambient light alone lights, so
  * that each ray's ways out are all that counts. With eight exits it is a tenth too dark. */
-#define STONE(name, at)                                                                            \
+#define STONE_OF(name, at, more)                                                                   \
   "- {name: " name ", shape: brilliant, diameter: 0.1, transform: [{rotate: {axis: [0, 0, 1], "    \
-  "angle: 7}}, {translate: [" at ", 0, 0.046]}], material: dense}\n"
+  "angle: 7}}, {translate: [" at ", 0, 0.046]}], material: dense" more "}\n"
+#define STONE(name, at) STONE_OF(name, at, "")
 static void check_stones(const char *stones, const char *eye, const char *target, const char *fov,
-                         int looks) {
-  char text[1024];
+                         int looks, double share) {
+  char text[2048];
   snprintf(
       text, sizeof text,
       "materials: glass.yaml\nambient: 3\n"
@@ -174,6 +176,7 @@ static void check_stones(const char *stones, const char *eye, const char *target
       eye, target, fov, stones);
   OWNED(abbe_scene, scene) = scene_of(text);
   abbe_render_desc desc = small_frame;
+  desc.energy_share = share; /* 0: the plan's */
   abbe_renderer *renderer = drawn_renderer(&scene, &desc);
   OWNED(abbe_image, drawn) = picture_of(renderer);
   abbe_renderer_free(renderer);
@@ -193,17 +196,37 @@ static void check_stones(const char *stones, const char *eye, const char *target
 }
 
 TEST(a_stone_face_up) {
-  check_stones(STONE("stone", "0"), "[0, -0.04, 0.8]", "[0, 0, 0.05]", "4", 48);
+  check_stones(STONE("stone", "0"), "[0, -0.04, 0.8]", "[0, 0, 0.05]", "4", 48, 0);
 }
 
 TEST(a_stone_from_the_side) {
-  check_stones(STONE("stone", "0"), "[0.1, -0.75, 0.2]", "[0, 0, 0.04]", "2.5", 8);
+  check_stones(STONE("stone", "0"), "[0.1, -0.75, 0.2]", "[0, 0, 0.04]", "2.5", 8, 0);
+}
+
+/* Films on all of it, or on some facets; one that absorbs; and in turn with another stone. */
+TEST(coated_stones) {
+#define TITANIA ", coating: {layers: [[2.4, 120]]}"
+#define GREY ", coating: {layers: [[[0.42, 2.4], 10]], faces: [pavilion]}"
+  check_stones(STONE_OF("stone", "0", TITANIA), "[0, -0.04, 0.8]", "[0, 0, 0.05]", "4", 48, 5e-4);
+  check_stones(STONE_OF("stone", "0", GREY), "[0, -0.04, 0.8]", "[0, 0, 0.05]", "4", 48, 5e-4);
+  check_stones(STONE_OF("left", "-0.052", TITANIA) STONE("right", "0.052"), "[0.05, -0.75, 0.2]",
+               "[-0.052, 0, 0.04]", "2.5", 8, 0);
+}
+
+/* Photons too. */
+TEST(light_through_films) {
+#define PANE(coating)                                                                              \
+  CAMERA POINT_LIGHT FLOOR "- {name: pane, shape: box, size: [0.1, 0.1, 0.03], transform: "        \
+                           "[{translate: [0, 0, 0.2]}], material: dense" coating "}\n"
+  check(PANE(TITANIA), 4, 1e-4);
+  check(PANE(GREY), 4, 1e-4);
+  check(CAMERA POINT_LIGHT FLOOR BALL("crown" TITANIA) INNER("air"), 4, 1e-3);
 }
 
 /* Through one the eye sees the other, from refractor to refractor. */
 TEST(two_stones_from_the_side) {
   check_stones(STONE("left", "-0.052") STONE("right", "0.052"), "[0.05, -0.75, 0.2]",
-               "[-0.052, 0, 0.04]", "2.5", 8);
+               "[-0.052, 0, 0.04]", "2.5", 8, 0);
 }
 
 /* ---- colours of what disperses, which may be neither the first refractor nor one by itself ----

@@ -1,22 +1,61 @@
 #include "gl/plan/examine/models.h"
 
+#include "base/maths.h"
+
 #include "gl/plan/examine/reach.h"
 #include "gl/plan/examine/spectral_needs.h"
 #include "scenes/geometry/digest.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { MAX_FOLLOWED = 32, MAX_REFRACTORS = 255, MAX_LISTED = 48 };
 
 /* An index as near to air's as this bends no ray by more than that, a few grazing ones aside. */
 static const double invisible = 2e-6;
 
+/* The plane that a face lies in. */
+static size_t plane_of(const abbe_object *object, size_t face) {
+  const uint32_t *f = object->mesh.face[face];
+  const double *p = object->mesh.position[f[0]];
+  double e[2][3], n[3], most = -INFINITY;
+  size_t plane = 0;
+  for (int k = 0; k < 2; k++) abbe_vector_subtract(object->mesh.position[f[k + 1]], p, e[k]);
+  abbe_vector_cross(e[0], e[1], n);
+  for (size_t i = 0; i < object->exact.count; i++) {
+    const double along = abbe_vector_dot(n, object->exact.plane[i]);
+    if (along > most) plane = i;
+    most = fmax(most, along);
+  }
+  return plane;
+}
+
+bool abbe_refractor_films(const abbe_object *object, uint8_t *film) {
+  uint8_t found[ABBE_SCENE_MAX_PLANES] = {0};
+  bool known[ABBE_SCENE_MAX_PLANES] = {false}, alike = true;
+  const abbe_coatings *c = object->coatings;
+  for (size_t i = 0; i < c->face_count; i++) {
+    const size_t plane = plane_of(object, i);
+    alike = alike && (!known[plane] || found[plane] == c->face[i]);
+    found[plane] = c->face[i];
+    known[plane] = true;
+  }
+  if (film != NULL) memcpy(film, found, object->exact.count);
+  return alike;
+}
+
+bool abbe_refractor_films_by_face(const abbe_object *object) {
+  return object->coatings != NULL && object->coatings->face != NULL &&
+         (object->exact.kind != ABBE_EXACT_CONVEX || !abbe_refractor_films(object, NULL));
+}
+
 /* Whether light goes through the object as through air: clear, of air's index, and no bubble. */
 static bool is_invisible(const abbe_scene *scene, const abbe_object *object,
                          const abbe_plan *plan) {
   abbe_material_range range;
   if (abbe_method_of(plan->desc.profile)->printed || object->medium != NULL ||
+      object->coatings != NULL ||
       abbe_material_range_make(object->material, plan->desc.min_nm, plan->desc.max_nm, &range,
                                NULL) != ABBE_OK)
     return false;
@@ -56,6 +95,7 @@ static const char *why_in_turn(const abbe_scene *scene, abbe_plan *plan) {
     return "light of all around is followed from every receiver";
   if (refractors > 1) return "there is more than one refractor";
   if (scene->camera.inside && plan->around_eye != NULL) return "the eye is inside a refractor";
+  if (abbe_refractor_films_by_face(only)) return "films are on some of the refractor's faces";
   if (only->exact.kind != ABBE_EXACT_SPHERE && only->exact.kind != ABBE_EXACT_CONVEX &&
       !is_convex(&only->mesh, &plan->shape))
     return "the refractor is not convex";
@@ -108,6 +148,8 @@ static abbe_refractor_model model_of(const abbe_object *object, const abbe_plan 
   if (abbe_method_of(plan->desc.profile)->own_passes) return ABBE_REFRACTOR_LAYERS;
   if (plan->desc.model != ABBE_MODEL_AUTO)
     return (abbe_refractor_model)(plan->desc.model - ABBE_MODEL_SPHERE);
+  if (plan->multi_refractor_paths && abbe_refractor_films_by_face(object))
+    return ABBE_REFRACTOR_BVH;
   if (object->exact.kind == ABBE_EXACT_SPHERE) return ABBE_REFRACTOR_SPHERE;
   if (object->exact.kind == ABBE_EXACT_CONVEX) return ABBE_REFRACTOR_CONVEX;
   return plan->multi_refractor_paths ? ABBE_REFRACTOR_BVH : ABBE_REFRACTOR_LAYERS;
@@ -126,6 +168,8 @@ static void write_reason(const abbe_object *object, const abbe_plan *plan, char 
     because = only;
   } else if (plan->desc.model != ABBE_MODEL_AUTO) {
     because = "as asked";
+  } else if (plan->multi_refractor_paths && abbe_refractor_films_by_face(object)) {
+    because = "films are on some of its faces";
   } else if (object->exact.kind == ABBE_EXACT_SPHERE) {
     because = "the object is a sphere";
   } else if (object->exact.kind == ABBE_EXACT_CONVEX) {
@@ -168,6 +212,8 @@ static abbe_result add_refractor(const abbe_scene *scene, size_t i, abbe_plan *p
   const abbe_object *object = &scene->object[i];
   char reason[288];
   abbe_result result = abbe_spectral_needs_examine(scene, object->material, plan, error);
+  plan->filmed =
+      plan->filmed || (object->coatings != NULL && !abbe_method_of(plan->desc.profile)->own_passes);
   plan->absorbing = plan->absorbing || object->medium != NULL;
   plan->tinting = plan->tinting ||
                   abbe_medium_is_coloured(object->medium, plan->desc.min_nm, plan->desc.max_nm);

@@ -4,6 +4,7 @@
 #include "base/number.h"
 #include "colorimetry/pleochroism.h"
 #include "colorimetry/weights.h"
+#include "gl/plan/examine/reach.h"
 #include "spectral/biaxial.h"
 #include "spectral/film.h"
 #include "spectral/optics.h"
@@ -266,6 +267,7 @@ static const char *wavelengths_reason(const abbe_plan *plan, bool asked) {
          : plan->dispersive                    ? "the index varies with wavelength"
          : plan->tinting                       ? "the attenuation varies with wavelength"
          : plan->colouring                     ? "a mirror's reflectance varies with wavelength"
+         : plan->filmed                        ? "films reflect by wavelength"
          : plan->tinted_air                    ? "haze in the air varies with wavelength"
          : plan->mirror_count == plan->refractor_count
              ? "mirrors reflect all wavelengths alike"
@@ -300,7 +302,8 @@ size_t abbe_spectral_needs_lines(const abbe_scene *scene, double min_nm, double 
 void abbe_spectral_needs_count(const abbe_scene *scene, abbe_plan *plan) {
   const bool asked = plan->desc.wavelengths != 0;
   const size_t own = abbe_method_of(plan->desc.profile)->wavelengths;
-  const bool varies = plan->dispersive || plan->tinting || plan->colouring || plan->tinted_air;
+  const bool varies =
+      plan->dispersive || plan->tinting || plan->colouring || plan->filmed || plan->tinted_air;
   if (!asked) plan->desc.wavelengths = !varies ? 1 : own > 0 ? own : ABBE_PLAN_WAVELENGTHS;
   double line[ABBE_PLAN_MOST_LINES];
   plan->lines = 0;
@@ -325,15 +328,23 @@ static bool shine_alike(const abbe_scene *scene, double min, double max) {
   return true;
 }
 
-/* What a film reflects head on, in per cent, beside the bare face. */
-static void note_film(const abbe_object *object, const abbe_coating *coating, abbe_plan *plan) {
+/* Whether the plan's model of the object knows its films. */
+static bool draws_films(const abbe_scene *scene, const abbe_object *object, const abbe_plan *plan) {
+  size_t r = 0;
+  while (r < plan->refractor_count && object_of(scene, plan, r) != object) r++;
+  return plan->filmed && r < plan->refractor_count &&
+         (object->coatings->face == NULL || plan->model[r] == ABBE_REFRACTOR_CONVEX ||
+          plan->model[r] == ABBE_REFRACTOR_BVH);
+}
+
+/* What a film reflects head on, in per cent. */
+static void note_film(const abbe_object *object, const abbe_coating *coating, bool drawn,
+                      abbe_plan *plan) {
   static const double nm[3] = {450, 550, 650};
-  double r[2][3], bare[3], ignored, thinnest = INFINITY;
-  const abbe_coating none = {0};
+  double r[2][3], ignored, thinnest = INFINITY;
   for (int i = 0; i < 3; i++) {
     double n = 0;
     if (abbe_material_n(object->material, nm[i], &n, NULL) != ABBE_OK ||
-        abbe_coating_straight(&none, n, false, nm[i], &bare[i], &ignored, NULL) != ABBE_OK ||
         abbe_coating_straight(coating, n, false, nm[i], &r[0][i], &ignored, NULL) != ABBE_OK ||
         abbe_coating_straight(coating, n, true, nm[i], &r[1][i], &ignored, NULL) != ABBE_OK)
       return;
@@ -341,10 +352,10 @@ static void note_film(const abbe_object *object, const abbe_coating *coating, ab
   for (size_t i = 0; i < coating->count; i++) thinnest = fmin(thinnest, coating->layer[i].nm);
   abbe_plan_note(plan,
                  "%s: film: R at 0 degrees at 450/550/650 nm is %.2f/%.2f/%.2f %% "
-                 "from outside, %.2f/%.2f/%.2f %% from inside; it is drawn bare, with "
-                 "%.2f/%.2f/%.2f %%, and 'abbe trace' has the film",
+                 "from outside, %.2f/%.2f/%.2f %% from inside%s",
                  object->name, 100 * r[0][0], 100 * r[0][1], 100 * r[0][2], 100 * r[1][0],
-                 100 * r[1][1], 100 * r[1][2], 100 * bare[0], 100 * bare[1], 100 * bare[2]);
+                 100 * r[1][1], 100 * r[1][2],
+                 drawn ? "" : "; it is drawn bare, and 'abbe trace' has the film");
   if (thinnest < 1)
     abbe_plan_note(plan, "%s: a layer of its film is %.2g nm, thinner than an index holds for",
                    object->name, thinnest);
@@ -433,12 +444,25 @@ static void note_roughness(const abbe_object *o, abbe_plan *plan) {
                  o->name, 100 * rough / all, least, most);
 }
 
+/* Tables have films between their object and air. */
+static void note_covered_films(const abbe_scene *scene, const abbe_object *object,
+                               abbe_plan *plan) {
+  for (size_t r = 0; r < plan->refractor_count; r++) {
+    const abbe_object *other = object_of(scene, plan, r);
+    if (other == object || plan->mirror[r] || !abbe_reach_overlap(object, other)) continue;
+    abbe_plan_note(plan, "%s: its films are left out where it touches another refractor, as '%s'",
+                   object->name, other->name);
+    return;
+  }
+}
+
 void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan) {
   note_volume(scene, plan);
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *o = &scene->object[i];
     for (size_t k = 0; o->coatings != NULL && k < o->coatings->count; k++)
-      note_film(o, &o->coatings->coating[k], plan);
+      note_film(o, &o->coatings->coating[k], draws_films(scene, o, plan), plan);
+    if (o->coatings != NULL && draws_films(scene, o, plan)) note_covered_films(scene, o, plan);
     note_roughness(o, plan);
   }
   for (size_t i = 0; i < scene->object_count; i++)

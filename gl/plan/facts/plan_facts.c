@@ -35,9 +35,9 @@ size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
    * (outgoing_segment.glsl). */
   static const size_t coarse = 4;
   const size_t n = plan->desc.wavelengths;
-  /* Hits do not know what the air changes between two wavelengths. */
+  /* Hits do not know what the air or films change between two wavelengths. */
   const bool apart = plan->fills && !abbe_method_of(plan->desc.profile)->own_passes;
-  return apart && !plan->tinted_air && plan->lines == 0 && n > coarse ? coarse : n;
+  return apart && !plan->tinted_air && !plan->filmed && plan->lines == 0 && n > coarse ? coarse : n;
 }
 
 static bool has_lamp(const abbe_plan *p) {

@@ -210,6 +210,7 @@ typedef struct abbe_plan {
   bool absorbing;  /* its attenuation is above zero somewhere */
   bool tinting;    /* its attenuation varies */
   bool colouring;  /* some mirror's reflectance varies */
+  bool filmed;     /* some refractor has films on faces that are drawn */
   bool tinted_air; /* the air's absorption or scattering varies */
 
   abbe_plan_inside inside;

@@ -63,17 +63,36 @@ static size_t steps_of(const band_set *s, size_t i) {
 
 /* Set 0 has the plan's bands, as all have of lines. Those of a share meet midway between its own
  * wavelengths, and end where the range ends. */
+static bool has_plan_bands(const abbe_plan *plan, int set) {
+  return set == 0 || plan->lines > 0;
+}
+
+static double own_nm(const abbe_plan *plan, const abbe_wavelengths *w, int set, size_t i) {
+  const double width = w->edge_nm[i + 1] - w->edge_nm[i];
+  return has_plan_bands(plan, set) ? w->lambda_nm[i]
+                                   : w->edge_nm[i] + (set - 0.5) / ABBE_CAMERA_BAND_SHARES * width;
+}
+
+static double edge_nm(const abbe_plan *plan, const abbe_wavelengths *w, int set, size_t i) {
+  if (i == 0 || i == w->count || has_plan_bands(plan, set)) return w->edge_nm[i];
+  return 0.5 * (own_nm(plan, w, set, i - 1) + own_nm(plan, w, set, i));
+}
+
 static void place(band_set *s, int set) {
   const abbe_wavelengths *w = &s->tables->all;
-  const bool own = set == 0 || s->plan->lines > 0;
-  s->edge_nm[0] = w->edge_nm[0];
-  for (size_t i = 0; i < w->count; i++) {
-    const double width = w->edge_nm[i + 1] - w->edge_nm[i];
-    s->lambda_nm[i] =
-        own ? w->lambda_nm[i] : w->edge_nm[i] + (set - 0.5) / ABBE_CAMERA_BAND_SHARES * width;
-    if (i > 0) s->edge_nm[i] = own ? w->edge_nm[i] : 0.5 * (s->lambda_nm[i - 1] + s->lambda_nm[i]);
+  for (size_t i = 0; i <= w->count; i++) {
+    s->edge_nm[i] = edge_nm(s->plan, w, set, i);
+    if (i < w->count) s->lambda_nm[i] = own_nm(s->plan, w, set, i);
   }
-  s->edge_nm[w->count] = w->edge_nm[w->count];
+}
+
+void abbe_camera_bands_range(const abbe_plan *plan, const abbe_wavelengths *all, int set,
+                             size_t band, double range_nm[2]) {
+  size_t joined = 1, count = all->count;
+  for (; band >= count; joined *= 2, count = (count + 1) / 2) band -= count;
+  const size_t end = (band + 1) * joined;
+  range_nm[0] = edge_nm(plan, all, set, band * joined);
+  range_nm[1] = edge_nm(plan, all, set, end < all->count ? end : all->count);
 }
 
 /* Weights by their white; a white without X, say, is shared evenly. */

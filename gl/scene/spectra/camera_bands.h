@@ -48,6 +48,29 @@ abbe_result abbe_camera_bands_fill(const abbe_scene *scene, const abbe_plan *pla
                                    const abbe_spectral_tables *tables, abbe_camera_band *out,
                                    float (*texel)[4], abbe_error *error);
 
+/* Wavelengths that a band of a set has of its own; bands go level after level. */
+void abbe_camera_bands_range(const abbe_plan *plan, const abbe_wavelengths *all, int set,
+                             size_t band, double range_nm[2]);
+
+/* What films on refractors' faces in air make of unpolarised light (films.glsl). By the cosine of
+ * the angle in air, in even steps; beyond total reflection, where absorbing films take light, by
+ * the tangent of half the angle whose sine is that cosine's imaginary part over its most. A photon
+ * has the film of its wavelength, the camera the mean over its band, by the light's brightness. */
+enum { ABBE_FILM_ANGLES = 128 };
+
+/* The films of refractor r, which are numbered through from *first on; NULL: it has none that are
+ * drawn. */
+const abbe_coatings *abbe_film_tables_of(const abbe_scene *scene, const abbe_plan *plan, size_t r,
+                                         uint32_t *first);
+size_t abbe_film_tables_texels(const abbe_scene *scene, const abbe_plan *plan);
+/* texel: of each refractor, the number of the film on all of it, -1: it is bare, -2: its planes
+ * have their own; then that of each plane; then of each film, first of all wavelengths, then of all
+ * bands of all sets, 2 ABBE_FILM_ANGLES + 1 each: what is reflected from outside
+ * and from inside, and what passes. Errors of abbe_coating_at. */
+abbe_result abbe_film_tables_fill(const abbe_scene *scene, const abbe_plan *plan,
+                                  const abbe_spectral_tables *tables, float (*texel)[4],
+                                  abbe_error *error);
+
 /* X, Y and Z of white, each of 1, that mirror r reflects at normal incidence, of what fill has
  * made. */
 void abbe_camera_bands_reflected(const abbe_plan *plan, const abbe_camera_band *band,

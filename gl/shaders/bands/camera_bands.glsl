@@ -32,6 +32,9 @@ Depth attenuation_of(int r) { return parts_at(2 * (first_band(r) + band_at)); }
 void take_band(int set, int at) {
   band_set = set;
   band_at = at;
+#ifdef FILMS
+  film_row = counts.wavelengths + band_of_all_sets();
+#endif
   colour_from_rgb = band_colour(band_of_all_sets()) * xyz_from_rgb;
   int light = 2 * REFRACTORS * BAND_SETS * counts.bands + 6 * (set * counts.bands + at);
   part_x = parts_at(light);
@@ -50,6 +53,9 @@ vec3 band_weight;
 void take_band(int set, int at) {
   band_set = set;
   band_at = at;
+#ifdef FILMS
+  film_row = counts.wavelengths + band_of_all_sets();
+#endif
   colour_from_rgb = band_colour(band_of_all_sets()) * xyz_from_rgb;
   band_weight = bands[set * counts.bands + at].weight_n.xyz;  // every refractor's are the same
 }

@@ -217,7 +217,6 @@ float abbe_media_attenuation_along(const abbe_media *m, int i, uint32_t k, float
 }
 
 void abbe_media_forget_axes(abbe_media *m) {
-  abbe_films_free(&m->films);
   free(m->rough);
   m->rough = NULL;
   free_crystals(m);

@@ -3,6 +3,7 @@
 
 #include "colorimetry/upsampling.h"
 #include "gl/scene/spectra/camera_bands.h"
+#include "scenes/coating/coating.h"
 
 enum { NODES = 7, COUNT = NODES + 4 + 2 + 1, SETS = ABBE_CAMERA_BAND_SETS };
 
@@ -134,4 +135,63 @@ TEST(together_they_tell_a_spectrum_better) {
   const double truth = below[1] / all[1];
   assert_true(fabs(four - truth) < 0.35 * fabs(one - truth));
   done(&f);
+}
+
+/* The tables' films, interpolated at angles between theirs as shaders do, beside the function: of a
+ * photon's wavelength, of a band that is one line's, and beyond total reflection. */
+static double film_error(const char *coating, double n) {
+  enum { AT = 997, ANGLES = 2 * ABBE_FILM_ANGLES + 1 };
+  const abbe_render_desc desc = {.wavelengths = NODES, .min_nm = 400, .max_nm = 700};
+  OWNED(abbe_scene, scene) =
+      scene_of(printed(CAMERA POINT_LIGHT FLOOR BALL("flat, coating: %s"), coating));
+  FILLED(abbe_plan, plan, plan_scene(&scene, &desc, &plan));
+  FILLED(abbe_spectral_tables, tables,
+         OK(abbe_spectral_tables_make(&scene, &plan, &tables, &error)));
+  FREED float(*texel)[4] = calloc(abbe_film_tables_texels(&scene, &plan), sizeof *texel);
+  OK(abbe_film_tables_fill(&scene, &plan, &tables, texel, &error));
+  assert_true(plan.filmed && texel[0][0] == 0);
+  double worst = 0;
+  for (size_t i = 0; i < NODES; i++)
+    for (int k = 0; k < AT; k++) {
+      const double c = (k + 0.5) / AT, inside = sqrt(1 - (1 - c * c) / n / n), deep = n * n - 1;
+      const double beyond = sqrt(1 - (1 + deep * c * c) / n / n), glass[2] = {n, 0},
+                   air[2] = {1, 0};
+      abbe_film_layer layer[ABBE_FILM_MOST_LAYERS];
+      abbe_film_light light;
+      double exact[4], t;
+      const abbe_coating *film = scene.object[plan.refractor_object[0]].coatings->coating;
+      OK(abbe_coating_at(film, tables.all.lambda_nm[i], layer, &error));
+      abbe_film_light_at(layer, film->count, false, 1, glass, c, tables.all.lambda_nm[i], &light);
+      abbe_film_unpolarised(&light, &exact[0], &exact[2]);
+      abbe_film_light_at(layer, film->count, true, n, air, inside, tables.all.lambda_nm[i], &light);
+      abbe_film_unpolarised(&light, &exact[1], &t);
+      assert_near(t, exact[2], 1e-9);
+      abbe_film_light_at(layer, film->count, true, n, air, beyond, tables.all.lambda_nm[i], &light);
+      abbe_film_unpolarised(&light, &exact[3], &t);
+      for (int which = 0; which < 4; which++) {
+        const double x = ABBE_FILM_ANGLES * (1 + (which < 3 ? c : -c / (1 + sqrt(1 - c * c))));
+        const float(*at)[4] = (const float(*)[4])texel + 2 + i * ANGLES + (size_t)x;
+        const int column = which < 3 ? which : 1;
+        const double f = x - floor(x),
+                     here = (1 - f) * (double)at[0][column] + f * (double)at[1][column];
+        worst = fmax(worst, fabs(here - exact[which]));
+      }
+    }
+  return worst;
+}
+
+TEST(films_are_near_their_function) {
+  static const struct {
+    const char *coating;
+    double most;
+  } rows[] = {{"{layers: [[1.38, 99.6]]}", 1e-3},
+              {"{layers: [[2.4, 120]]}", 1e-3},
+              {"{layers: [[[0.42, 2.4], 10]]}", 1e-3},
+              {"{layers: [[1.38, 1], [2.15, 2], [1.7, 1]], quarter: 550}", 1e-3},
+              {"{layers: [[2.4, 2000]]}", 2e-3}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    const double found = film_error(rows[i].coating, 1.5);
+    print_message("%s: %.2g\n", rows[i].coating, found);
+    assert_true(found < rows[i].most);
+  }
 }
