@@ -26,7 +26,7 @@ foreach(name
     known_light
     mask
     media
-    mirrors mirror_walk rough_mirrors coated_walk crystal_walk double_refraction
+    mirrors mirror_walk rough_mirrors coated_walk turned_paths crystal_walk double_refraction
     rings
     nl_means
     outline
