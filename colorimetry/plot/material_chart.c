@@ -372,7 +372,7 @@ abbe_result abbe_material_map_write(const char *path, const abbe_material_map *m
   for (size_t i = 0; i < map->marked_count && good; i++)
     missing += !add_spot(&s[map->table_count], map->marked[i]);
   if (left_out != NULL) *left_out = missing;
-  ABBE_TRY(good ? write_map(path, map, s, error) : no_memory(error));
+  const abbe_result result = good ? write_map(path, map, s, error) : no_memory(error);
   for (size_t i = 0; i <= map->table_count; i++) free_spots(&s[i]);
-  return ABBE_OK;
+  return result;
 }

@@ -434,7 +434,6 @@ TEST(axes_that_cannot_be_are_refused) {
       {"material: topaz, axes: {x: [1, 0, 0], z: [0, 0, 1], y: [0, 1, 0]}", "has no key 'y'"},
       {"material: topaz, axes: [0, 0, 1]", "'axes' wants the principal axes x and z"},
       {"reflectance: 1, axes: {z: [0, 0, 1]}", "this object has no 'material'"},
-      {"material: topaz, medium: {scattering: 1}", "is a crystal"},
   };
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
     abbe_scene scene;
