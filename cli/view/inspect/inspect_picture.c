@@ -124,6 +124,13 @@ static bool find_triple(const abbe_image *image, size_t first, size_t channel[3]
   return true;
 }
 
+/* Of the triple that begins with that channel. */
+static abbe_result find_space(const abbe_inspect_picture *p, size_t first, abbe_picture_space *out,
+                              abbe_error *error) {
+  const char *own = p->image.channel[first];
+  return abbe_picture_space_find(&p->image, own[strlen(own) - 1] == 'X', p->path, out, error);
+}
+
 /* S1 to S3 of the band of channel S0. */
 static bool find_stokes(const abbe_image *image, size_t s0, size_t channel[4]) {
   channel[0] = s0;
@@ -159,8 +166,7 @@ static abbe_result list_entries(abbe_inspect_picture *p, abbe_error *error) {
     for (size_t c = 0; c < image->channels; c++) {
       const bool own = image->channel[c][0] == '\0' || image->channel[c][1] == '\0';
       if (own == (layered == 1) || !find_triple(image, c, channel)) continue;
-      const bool xyz = strchr(image->channel[c] + strlen(image->channel[c]) - 1, 'X') != NULL;
-      if (abbe_picture_space_find(image, xyz, p->path, &p->space, &why) == ABBE_OK)
+      if (find_space(p, c, &p->space, &why) == ABBE_OK)
         add(p, ABBE_INSPECT_COLOUR, own ? "colour" : image->channel[c], channel);
       else
         snprintf(p->note, sizeof p->note, "%s", why.text);
@@ -259,8 +265,7 @@ static abbe_result mix_bands(const abbe_inspect_picture *p, const abbe_inspect_l
 static void mix_colour(const abbe_inspect_picture *p, const abbe_inspect_entry *entry,
                        abbe_inspect_mix *mix) {
   abbe_picture_space space = p->space;
-  const char *first = p->image.channel[entry->channel[0]];
-  abbe_picture_space_find(&p->image, strrchr(first, 'X') != NULL, p->path, &space, NULL);
+  find_space(p, entry->channel[0], &space, NULL);
   memcpy(mix->channel, entry->channel, sizeof entry->channel);
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++) mix->weight[i][k] = space.to_xyz[3 * k + i];

@@ -45,6 +45,10 @@ static void show(abbe_inspect *s, size_t at, const char *name, abbe_inspect_look
   OK(abbe_inspect_show(s, at, &look, &error));
 }
 
+static void probe(const abbe_inspect *s, const size_t w[4], abbe_inspect_probe *out) {
+  OK(abbe_inspect_probe_make(s, s->at, w, out, &error));
+}
+
 /* A screen of so many pixels, each of the image `zoom` of them, the image's middle in its own. */
 static void draw(abbe_inspect *s, size_t width, size_t height, double zoom, unsigned char *out) {
   bool whole = false;
@@ -108,6 +112,16 @@ TEST(what_is_smaller_is_the_mean_of_its_pixels_in_every_tile) {
   free(data);
 }
 
+/* Grey is the white of sRGB, D65; as X, Y, Z it would be that of E. */
+TEST(a_layer_is_named_as_its_file_has_it) {
+  static const char *const names[] = {"FX.B", "FX.G", "FX.R"};
+  FILLED(abbe_inspect, s, open_picture(&s, 1, 1, 3, names, (const float[]){0.5F, 0.5F, 0.5F}));
+  show(&s, 0, "FX.R", (abbe_inspect_look){0});
+  FILLED(abbe_inspect_probe, p, probe(&s, (const size_t[4]){0}, &p));
+  assert_near(p.xy[0], 0.3127, 1e-4);
+  assert_near(p.xy[1], 0.3290, 1e-4);
+}
+
 /* Bands of one value from 380 to 780 nm, as light or as a reflectance, of 2 x 1 pixels. */
 static void open_bands(abbe_inspect *s, const char *form, float value) {
   enum { BANDS = 41 };
@@ -120,10 +134,6 @@ static void open_bands(abbe_inspect *s, const char *form, float value) {
     data[i] = data[BANDS + i] = value;
   }
   open_picture(s, 2, 1, BANDS, names, data);
-}
-
-static void probe(const abbe_inspect *s, const size_t w[4], abbe_inspect_probe *out) {
-  OK(abbe_inspect_probe_make(s, s->at, w, out, &error));
 }
 
 /* White of E is (1/3, 1/3); a lumen is 683 lm/W times the integral of ybar, 106.857 nm [CIE15]. */
