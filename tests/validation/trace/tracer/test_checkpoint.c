@@ -267,9 +267,9 @@ TEST(what_is_no_checkpoint_is_told) {
   } files[] = {{"", "not a checkpoint"},
                {"description: a scene\n", "not a checkpoint"},
                {"abbe checkpoint 1\nscene 1\n\n", "another version"},
-               {"abbe checkpoint 10\n", "broken"},
-               {"abbe checkpoint 10\nscene 0123", "broken"},
-               {"abbe checkpoint 10\n\n\n", "start anew"}};
+               {"abbe checkpoint 11\n", "broken"},
+               {"abbe checkpoint 11\nscene 0123", "broken"},
+               {"abbe checkpoint 11\n\n\n", "start anew"}};
   abbe_error why;
   HELD(abbe_tracer, tracer) = make_tracer(&scene, &small);
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
