@@ -27,7 +27,7 @@ bool abbe_eye_trace(const abbe_eye_context *c, const abbe_eye_path *p, abbe_hit 
 
 /* By the share that is turned on all of the way, at a place that the scattering draws; roulette
  * takes what is faint. */
-bool abbe_eye_turn(const abbe_eye_context *c, abbe_eye_path *p, float length, float u,
+bool abbe_eye_turn(const abbe_eye_context *c, abbe_eye_path *p, float length,
                    abbe_eye_path *turned) {
   const abbe_media *m = c->w->media;
   const abbe_haze *h = &m->haze;
@@ -41,12 +41,13 @@ bool abbe_eye_turn(const abbe_eye_context *c, abbe_eye_path *p, float length, fl
   p->branch *= 1 - part;
   turned->branch *= part;
   turned->share *= part;
+  float random[4], density;
   if (turned->branch < least) {
-    if (!(u * least < turned->branch)) return false;
+    abbe_eye_random4(c, p->id ^ 0x6661696eu, p->steps, random);
+    if (!(random[0] * least < turned->branch)) return false;
     turned->share *= least / turned->branch;
     turned->branch = least;
   }
-  float random[4], density;
   abbe_eye_random4(c, p->id ^ 0x7475726eu, p->steps, random);
   const float t = abbe_haze_place(off, length, random[0], &density);
   turned->share *= expf(-t * (whole - off));

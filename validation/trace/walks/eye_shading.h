@@ -64,9 +64,8 @@ bool abbe_eye_trace(const abbe_eye_context *context, const abbe_eye_path *path, 
                     float *length);
 
 /* What a refractor that scatters more than once turns of the path on its way of that length, before
- * it is weakened: as *turned where that goes on. u: in [0, 1). Shares of both branches are those of
- * what came. */
-bool abbe_eye_turn(const abbe_eye_context *context, abbe_eye_path *path, float length, float u,
+ * it is weakened: as *turned where that goes on. Shares of both branches are those of what came. */
+bool abbe_eye_turn(const abbe_eye_context *context, abbe_eye_path *path, float length,
                    abbe_eye_path *turned);
 
 /* What ends a path goes into the sample: a receiver, a light, or nothing at all. straight: the

@@ -261,8 +261,7 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
   for (int k = 0; k < 4; k++) random[k] = abbe_random_float(bits[k]);
   if (abbe_haze_is(&c->w->media->haze)) {
     if (is_coloured_haze(c, p)) abbe_eye_disperse(p, bits[1]);
-    if (b->count < TURNS_ROOM &&
-        abbe_eye_turn(c, p, met ? length : INFINITY, random[3], &b->path[b->count]))
+    if (b->count < TURNS_ROOM && abbe_eye_turn(c, p, met ? length : INFINITY, &b->path[b->count]))
       b->count++;
     abbe_eye_haze(c, p, met ? length : INFINITY, false);
   } else if (met) {
@@ -455,7 +454,7 @@ static void walk_sample(const abbe_eye_context *c, const abbe_trace_camera *came
     own.id += i << 24;
     own.share /= (float)count;
     if (count > 1) abbe_eye_disperse(&own, abbe_random_part(wave, i, count));
-    if (abbe_eye_turn(c, &own, met ? length : INFINITY, 0.5f, &turned)) follow(c, &turned);
+    if (abbe_eye_turn(c, &own, met ? length : INFINITY, &turned)) follow(c, &turned);
     abbe_eye_haze(c, &own, met ? length : INFINITY, true);
     walk_on(c, &own, met, &hit, wave);
   }

@@ -245,6 +245,26 @@ TEST(a_white_furnace) {
   }
 }
 
+/* From within it is brighter by the square of the index, and haze in it, thin or thick, cannot be
+ * seen either. */
+TEST(a_white_furnace_from_within) {
+  static const float scattering[] = {1, 30};
+  abbe_trace_desc desc = {.width = 8, .height = 8, .no_map = true, .threads = 1};
+  for (int i = 0; i < 2; i++) {
+    OWNED(fixture, f) = {0};
+    double mean[3], error[3];
+    make_with(printed("materials: glass.yaml\ncamera: {eye: [0.1, 0, 0.3], target: [0.1, 1, 0.1], "
+                      "inside: true}\n" EVEN_SKY GLASS_ONLY("flat, medium: {scattering: %g}"),
+                      (double)scattering[i]),
+              &desc, 1, &f);
+    look(&f, 200, mean, error);
+    for (int k = 0; k < 3; k++) {
+      assert_near(mean[k], 2.25, 4 * error[k]);
+      assert_true(error[k] < 0.02);
+    }
+  }
+}
+
 /* Splitting changes how a stone's light is found, not how much there is: against roulette at all
  * interfaces and none above a thousandth, each with less spread than the one before. */
 TEST(splitting_keeps_the_mean) {

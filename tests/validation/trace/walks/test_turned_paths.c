@@ -5,7 +5,7 @@
 
 static const char *const bodies[] = {
     "n-bk7, roughness: 0.3",
-    "calcite, axis: [1, 0.3, 0.5], roughness: [{alpha: 1, faces: table}]",
+    "calcite, axis: [1, 0.3, 0.5], roughness: [{alpha: 1, faces: pavilion}]",
     "n-bk7, coating: {layers: [[1.38, 99.6]]}, roughness: 0.5",
     "n-bk7, medium: {scattering: 12, g: 0.5}",
     "calcite, axis: [1, 0.3, 0.5], medium: {scattering: [[400, 20], [700, 10]], g: -0.4}",
@@ -23,7 +23,10 @@ TEST(every_watt_is_in_the_ledger) {
     assert_near(l->deposited + l->absorbed + l->missed + l->lost, l->reached, 1e-5 * l->reached);
     assert_true(l->lost <= 1e-3 * l->reached);
     assert_true(l->scattered == 0);
-    if (i < 3) assert_near(l->frosted, i == 1 ? l->frosted : l->reached, 1e-6 * l->reached);
+    if (i == 1) /* all but what the table mirrors */
+      assert_true(l->frosted > 0.9 * l->reached && l->frosted < 0.97 * l->reached);
+    else if (i < 3)
+      assert_near(l->frosted, l->reached, 1e-6 * l->reached);
     assert_true(i < 3 ? l->turned == 0 : l->turned > 0.2 * l->reached);
     assert_true(l->turned <= l->reached && l->frosted <= l->reached);
     fixture_free(f);
