@@ -23,6 +23,7 @@ static abbe_result fill(const abbe_geometry *g, abbe_films *f, abbe_error *error
         if (result != ABBE_OK) return result;
       }
     }
+    if (c != NULL) f->key = abbe_digest(f->key, &i, sizeof i);
     if (c != NULL) f->key = abbe_digest_array(f->key, c->face, c->face_count, 1);
   }
   f->key = abbe_digest_array(f->key, f->layer, f->count * (f->steps + 1), sizeof *f->layer);

@@ -130,6 +130,7 @@ static abbe_result find_rough(const abbe_geometry *g, abbe_media *m, abbe_error 
     if (m->rough == NULL) m->rough = calloc(m->refractors, sizeof *m->rough);
     if (m->rough == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for facets");
     m->rough[i] = rough;
+    m->films.key = abbe_digest(m->films.key, &i, sizeof i);
     for (size_t k = 0; k < rough->count; k++)
       m->films.key = abbe_digest_array(m->films.key, &rough->coating[k].alpha, 1, sizeof(double));
     m->films.key = abbe_digest_array(m->films.key, rough->face, rough->face_count, 1);

@@ -61,3 +61,20 @@ TEST(refractors_of_one_material_are_one_medium) {
   assert_false(abbe_media_same(&m, -1, 0));
   assert_false(abbe_media_same(&m, 1, -1));
 }
+
+/* Which refractor a film or facets are on is in the key, by which a trace goes on from a file. */
+TEST(the_key_knows_whose_face_is_rough_or_coated) {
+  static const char *const face[] = {"", ", roughness: 0.3", ", coating: {layers: [[1.38, 99.6]]}"};
+  const double lambda_nm[2] = {380, 780};
+  uint64_t key[3][2];
+  for (int i = 0; i < 6; i++) {
+    const char *ball = i % 2 ? face[i / 2] : "", *brick = i % 2 ? "" : face[i / 2];
+    OWNED(abbe_scene, scene) =
+        scene_of(printed(CAMERA POINT_LIGHT FLOOR BALL("crown%s") BRICK("crown%s"), ball, brick));
+    MADE(abbe_geometry, g, abbe_geometry_make(&scene, &g, &error));
+    MADE(abbe_media, m, abbe_media_make(&g, lambda_nm, 1, &m, &error));
+    key[i / 2][i % 2] = m.films.key;
+  }
+  assert_true(key[0][0] == 0 && key[0][1] == 0);
+  for (int i = 1; i < 3; i++) assert_true(key[i][0] != key[i][1]);
+}
