@@ -25,14 +25,9 @@ static const char *const numbers[ABBE_VIEW_JUDGED_NUMBERS] = {"return", "gemray_
 /* What a slider of that name is at; 0: there is none. */
 static double value_of(const abbe_view_document *now, const abbe_view_object *object,
                        const char *name) {
-  for (size_t i = 0; i < object->value_count; i++) {
-    const abbe_view_value *v = &object->value[i];
-    const char *set = abbe_view_document_value(now, v->key), *end;
-    double value = v->value;
-    if (strcmp(strrchr(v->key, '.') + 1, name) != 0) continue;
-    if (set != NULL) abbe_number_read(set, &end, &value);
-    return value;
-  }
+  for (size_t i = 0; i < object->value_count; i++)
+    if (strcmp(strrchr(object->value[i].key, '.') + 1, name) == 0)
+      return abbe_view_outline_value(&object->value[i], now);
   return 0;
 }
 

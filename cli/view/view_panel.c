@@ -32,12 +32,8 @@ void abbe_view_panel_pair(const char *name, const char *format, ...) {
 static void slide(abbe_view_session *app, const abbe_view_value *v, const char *prefix,
                   bool logarithmic, double now_s) {
   char label[2 * ABBE_VIEW_NAME], format[48], text[ABBE_NUMBER_TEXT_SIZE];
-  const char *set = abbe_view_document_value(abbe_view_history_now(&app->state.history), v->key);
-  double value = v->value, shown;
-  const char *end;
+  double shown = v->scale * abbe_view_outline_value(v, abbe_view_history_now(&app->state.history));
   bool began = false;
-  if (set != NULL) abbe_number_read(set, &end, &value);
-  shown = value * v->scale;
   snprintf(label, sizeof label, "%.70s%s%.70s", prefix, prefix[0] != '\0' ? " " : "", v->label);
   snprintf(format, sizeof format, "%%.4g %s", v->unit);
   if (!abbe_ui_slider(label, &shown, v->min * v->scale, v->max * v->scale, format, logarithmic,

@@ -221,6 +221,13 @@ static void read_values(abbe_yaml *yaml, abbe_yaml_node node, const abbe_object 
   }
 }
 
+double abbe_view_outline_value(const abbe_view_value *value, const abbe_view_document *document) {
+  const char *set = abbe_view_document_value(document, value->key), *end;
+  double own;
+  return set != NULL && abbe_number_read_length(set, &end, &own) && *end == '\0' ? own
+                                                                                 : value->value;
+}
+
 /* The first of the scene's objects that item i is: a stone, its crossing parts and its setting.
  * Items of one line are not told apart. */
 static const abbe_object *objects_of(const abbe_scene *scene, abbe_yaml *yaml, abbe_yaml_node list,

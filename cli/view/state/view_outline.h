@@ -82,6 +82,9 @@ void abbe_view_outline_free(abbe_view_outline *outline);
 /* The table's materials into an outline; false without memory. */
 bool abbe_view_outline_list_materials(const abbe_material_table *table, abbe_view_outline *out);
 
+/* What a slider is at: as the document sets it, with a unit of length or without; else, or where
+ * that is no number, as the scene that was read has it. In the file's unit. */
+double abbe_view_outline_value(const abbe_view_value *value, const abbe_view_document *document);
 /* The whole transform of an object as a value to be set: as it was, but tilted about the origin of
  * its shape by `tilt_rad` about `axis` (0: not), and moved to `translate`. False where it does not
  * fit. */

@@ -83,6 +83,16 @@ TEST(a_design_begins_with_its_own_angles) {
   abbe_view_state_undo(&s, 2);
   learn(&s);
   assert_near(stone->value[0].value, 42, 0);
+  /* a slider is where the document has it, whatever unit that is in, also before it is learnt */
+  const abbe_view_value *width = &stone->value[2];
+  const double own = abbe_view_outline_value(width, abbe_view_history_now(&s.history));
+  assert_near(own, width->value, 0);
+  abbe_view_state_set(&s, width->key, "6.5mm", false, 3);
+  assert_near(abbe_view_outline_value(width, abbe_view_history_now(&s.history)), 0.0065, 1e-12);
+  abbe_view_state_set(&s, width->key, "0.007", false, 4);
+  assert_near(abbe_view_outline_value(width, abbe_view_history_now(&s.history)), 0.007, 0);
+  abbe_view_state_set(&s, width->key, "wide", false, 5);
+  assert_near(abbe_view_outline_value(width, abbe_view_history_now(&s.history)), own, 0);
   abbe_view_state_free(&s);
 }
 
