@@ -145,17 +145,16 @@ static void write_number(FILE *out, const char *format, double value) {
 }
 
 /* The design as it is cut now, and its report, by the program's own commands; NULL: no memory. */
-static char *report_command(const abbe_view_session *session, const char *pdf) {
+static char *report_command(const abbe_view_session *session, const char *cut, const char *pdf) {
   const abbe_view_object *object = first_design(session);
   const abbe_view_document *now = abbe_view_history_now(&session->state.history);
   const double crown = value_of(now, object, "crown"), pavilion = value_of(now, object, "pavilion");
-  char cut[1100], png[1100], program[4096] = "abbe", material[ABBE_VIEW_NAME], *text = NULL;
+  char png[1100], program[4096] = "abbe", material[ABBE_VIEW_NAME], *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
   if (out == NULL) return NULL;
   const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
   if (length > 0) program[length] = '\0';
-  abbe_view_keep_name(session, "-cut.asc", cut, sizeof cut);
   abbe_view_keep_name(session, ".png", png, sizeof png);
   material_of(now, object, material);
   abbe_view_keep_quote(out, program);
@@ -178,18 +177,22 @@ static char *report_command(const abbe_view_session *session, const char *pdf) {
 }
 
 abbe_result abbe_view_report_begin(abbe_view_session *session, abbe_error *error) {
-  char pdf[1100];
+  char pdf[1100], cut[1100];
   abbe_view_keep_name(session, "-report.pdf", pdf, sizeof pdf);
+  abbe_view_keep_name(session, "-cut.asc", cut, sizeof cut);
   if (session->reports)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the report is being made; wait a moment");
   if (first_design(session) == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a report is of a stone that is cut by a design ('shape: cut')");
-  abbe_result result = abbe_view_keep(session, error); /* the picture of its first page */
-  char *command = result == ABBE_OK ? report_command(session, pdf) : NULL;
+  ABBE_TRY(abbe_view_keep_check(session, cut, error));
+  ABBE_TRY(abbe_view_keep_check(session, pdf, error));
+  ABBE_TRY(abbe_view_keep(session, error)); /* the picture of its first page */
+  abbe_result result = ABBE_OK;
+  char *command = report_command(session, cut, pdf);
   char shell[] = "sh", option[] = "-c", *arguments[] = {shell, option, command, NULL};
-  if (result == ABBE_OK && (command == NULL || posix_spawn(&session->reporter, "/bin/sh", NULL,
-                                                           NULL, arguments, environ) != 0))
+  if (command == NULL ||
+      posix_spawn(&session->reporter, "/bin/sh", NULL, NULL, arguments, environ) != 0)
     result = abbe_error_set(error, ABBE_IO, "no other program can be started for the report");
   free(command);
   if (result != ABBE_OK) return result;

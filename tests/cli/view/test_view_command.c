@@ -94,6 +94,11 @@ TEST(two_stones_and_a_report) {
   run_must("\"$abbe\" view a.asc b.asc --material quartz --photons 16 --map 64 --wavelengths 3 "
            "--last balanced --size 380x200 --keep k --script a.txt");
   run_must("grep -q %%EOF k-report.pdf && \"$abbe\" gem info k-cut.asc > lines && test -s k.png");
+  /* a design of the report's own name is not cut over */
+  run_must(
+      "printf '%s\\n' 'wait moving' 'click report' 'assert note contains \"k-cut.asc is what\"' > "
+      "a.txt; \"$abbe\" view k-cut.asc --photons 16 --map 64 --wavelengths 3 --last moving "
+      "--size 380x200 --keep k --script a.txt");
   run_clears("rm a.* b.asc k* lines");
 }
 
