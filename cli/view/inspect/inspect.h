@@ -123,10 +123,11 @@ abbe_result abbe_inspect_draw(abbe_inspect *inspect, size_t width, size_t height
 
 /* What a picture has in a region, of its channels one by one: mean, standard deviation and standard
  * error of the mean, as of independent pixels; of one pixel, the error that the file states. NaN
- * stands for what is not known. Pixels that are not finite are left out. */
+ * stands for what is not known. What is not finite is left out channel by channel, and of the
+ * colour the pixels where one of its channels is not. */
 typedef struct abbe_inspect_probe {
-  size_t window[4]; /* x0, y0, x1, y1 in the image, both ends included */
-  size_t pixels, odd;
+  size_t window[4];   /* x0, y0, x1, y1 in the image, both ends included */
+  size_t pixels, odd; /* odd: those where what is shown is not finite */
   size_t channels;
   double *mean, *deviation, *error; /* [channels] */
   bool coloured;                    /* of what is shown if it is a colour, else of the bands, else

@@ -6,32 +6,26 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* About the first pixel, so that nothing cancels. */
-static void add_pixel(const abbe_image *image, size_t x, size_t y, const float *first,
-                      abbe_inspect_probe *p) {
-  const float *v = image->data + (y * image->width + x) * image->channels;
-  p->pixels++;
-  for (size_t c = 0; c < image->channels; c++)
-    if (!isfinite(v[c])) {
-      p->odd++;
-      return;
-    }
-  for (size_t c = 0; c < image->channels; c++) {
-    const double d = (double)v[c] - (double)first[c];
+static const float *pixel_at(const abbe_image *image, size_t x, size_t y) {
+  return image->data + (y * image->width + x) * image->channels;
+}
+
+/* Whether a pixel lacks part of what the mix needs. */
+static bool is_odd(const abbe_inspect_mix *mix, const float *pixel) {
+  size_t i = 0;
+  while (i < mix->count && isfinite(pixel[mix->channel[i]])) i++;
+  return i < mix->count;
+}
+
+/* About the first value, which error[] holds meanwhile, so that nothing cancels. */
+static void add_pixel(const float *v, size_t *count, abbe_inspect_probe *p) {
+  for (size_t c = 0; c < p->channels; c++) {
+    if (!isfinite(v[c])) continue;
+    if (count[c]++ == 0) p->error[c] = (double)v[c];
+    const double d = (double)v[c] - p->error[c];
     p->mean[c] += d;
     p->deviation[c] += d * d;
   }
-}
-
-static const float *first_finite(const abbe_image *image, const size_t w[4]) {
-  for (size_t y = w[1]; y <= w[3]; y++)
-    for (size_t x = w[0]; x <= w[2]; x++) {
-      const float *v = image->data + (y * image->width + x) * image->channels;
-      size_t c = 0;
-      while (c < image->channels && isfinite(v[c])) c++;
-      if (c == image->channels) return v;
-    }
-  return NULL;
 }
 
 /* The error that the file states of one pixel. */
@@ -42,21 +36,26 @@ static double stated_error(const abbe_image *image, const float *pixel, size_t c
   return at != (size_t)-1 ? (double)pixel[at] : NAN;
 }
 
-static void take_channels(const abbe_image *image, abbe_inspect_probe *p) {
+/* count: zeroed, of so many channels */
+static void take_channels(const abbe_inspect_picture *picture, size_t *count,
+                          abbe_inspect_probe *p) {
+  const abbe_image *image = &picture->image;
   const size_t *w = p->window;
-  const float *first = first_finite(image, w);
-  if (first != NULL)
-    for (size_t y = w[1]; y <= w[3]; y++)
-      for (size_t x = w[0]; x <= w[2]; x++) add_pixel(image, x, y, first, p);
-  else
-    p->pixels = p->odd = (w[2] - w[0] + 1) * (w[3] - w[1] + 1);
-  const double n = (double)(p->pixels - p->odd);
+  for (size_t y = w[1]; y <= w[3]; y++)
+    for (size_t x = w[0]; x <= w[2]; x++) {
+      const float *v = pixel_at(image, x, y);
+      p->pixels++;
+      p->odd += is_odd(&picture->mix, v);
+      add_pixel(v, count, p);
+    }
   for (size_t c = 0; c < p->channels; c++) {
+    const double n = (double)count[c], first = p->error[c];
     const double mean = n > 0 ? p->mean[c] / n : NAN;
     const double squares = n > 1 ? (p->deviation[c] - n * mean * mean) / (n - 1) : NAN;
     p->deviation[c] = n > 1 ? sqrt(fmax(0, squares)) : NAN;
-    p->error[c] = n == 1 ? stated_error(image, first, c) : p->deviation[c] / sqrt(n);
-    p->mean[c] = first != NULL ? (double)first[c] + mean : NAN;
+    p->error[c] = p->pixels == 1 ? stated_error(image, pixel_at(image, w[0], w[1]), c)
+                                 : p->deviation[c] / sqrt(n);
+    p->mean[c] = first + mean;
   }
 }
 
@@ -73,6 +72,21 @@ static const abbe_inspect_entry *colour_of(const abbe_inspect *s, const abbe_ins
   return best;
 }
 
+/* The mean of the pixels that have all of it, ACEScg; false: there is none. */
+static bool mean_of(const abbe_inspect_picture *p, const abbe_inspect_mix *mix, const size_t w[4],
+                    double out[3]) {
+  double count = 0, v[3];
+  for (size_t y = w[1]; y <= w[3]; y++)
+    for (size_t x = w[0]; x <= w[2]; x++) {
+      if (is_odd(mix, pixel_at(&p->image, x, y))) continue;
+      abbe_inspect_mix_at(mix, p, x, y, v);
+      for (int k = 0; k < 3; k++) out[k] += v[k];
+      count++;
+    }
+  for (int k = 0; k < 3 && count > 0; k++) out[k] /= count;
+  return count > 0;
+}
+
 static void take_cloud(const abbe_inspect_picture *p, const abbe_inspect_mix *mix,
                        const double matrix[9], abbe_inspect_probe *out) {
   const size_t *w = out->window;
@@ -81,6 +95,7 @@ static void take_cloud(const abbe_inspect_picture *p, const abbe_inspect_mix *mi
   for (size_t y = w[1]; y <= w[3]; y += step)
     for (size_t x = w[0]; x <= w[2]; x += step) {
       double xyz[3];
+      if (is_odd(mix, pixel_at(&p->image, x, y))) continue;
       abbe_inspect_mix_at(mix, p, x, y, xyz);
       abbe_rgb_space_apply(matrix, xyz, xyz);
       if (abbe_chromaticity_xy(xyz, out->cloud[out->cloud_count])) out->cloud_count++;
@@ -94,15 +109,14 @@ static abbe_result take_colour(const abbe_inspect *s, const abbe_inspect_picture
   abbe_inspect_mix mix;
   double matrix[9];
   abbe_dominant dominant = {NAN, NAN, NAN};
-  if (entry == NULL || out->pixels == out->odd) return ABBE_OK;
+  if (entry == NULL) return ABBE_OK;
   const abbe_result result = abbe_inspect_mix_make(p, entry, &s->look, &mix, error);
   if (result != ABBE_OK) return result;
   abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
-  for (size_t i = 0; i < mix.count; i++)
-    for (int k = 0; k < 3; k++) out->xyz[k] += mix.weight[i][k] * out->mean[mix.channel[i]];
+  const bool some = mean_of(p, &mix, out->window, out->xyz);
   abbe_rgb_space_apply(matrix, out->xyz, out->xyz);
   out->unit = mix.unit;
-  out->coloured = abbe_chromaticity_xy(out->xyz, out->xy);
+  out->coloured = some && abbe_chromaticity_xy(out->xyz, out->xy);
   if (out->coloured) {
     abbe_chromaticity_uv_of_xy(out->xy, out->uv);
     abbe_chromaticity_dominant(out->xy, d65, s->look.view.observer, &dominant);
@@ -125,10 +139,12 @@ abbe_result abbe_inspect_probe_make(const abbe_inspect *s, size_t at, const size
   out->mean = calloc(out->channels, sizeof *out->mean);
   out->deviation = calloc(out->channels, sizeof *out->deviation);
   out->error = calloc(out->channels, sizeof *out->error);
+  size_t *count = calloc(out->channels, sizeof *count);
   abbe_result result = ABBE_OK;
-  if (out->mean == NULL || out->deviation == NULL || out->error == NULL)
+  if (out->mean == NULL || out->deviation == NULL || out->error == NULL || count == NULL)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its channels", p->path);
-  if (result == ABBE_OK) take_channels(&p->image, out);
+  if (result == ABBE_OK) take_channels(p, count, out);
+  free(count);
   if (result == ABBE_OK) result = take_colour(s, p, out, error);
   if (result != ABBE_OK) abbe_inspect_probe_free(out);
   return result;

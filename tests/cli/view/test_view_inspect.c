@@ -211,13 +211,35 @@ TEST(a_region_has_its_mean_deviation_and_error) {
   assert_near(four.error[0], 0.6454972244, 1e-6);
   /* what is not finite is left out and counted; all that lies beyond the edge too */
   FILLED(abbe_inspect_probe, all, probe(&s, (const size_t[4]){0, 0, 9, 9}, &all));
-  assert_near(all.mean[0], 2.5, 1e-7);
+  assert_near(all.mean[0], 3, 1e-7);
+  assert_near(all.mean[1], 0.08, 1e-7);
   assert_int_equal(all.pixels, 6);
-  assert_int_equal(all.odd, 2);
+  assert_int_equal(all.odd, 1);
   FILLED(abbe_inspect_probe, one, probe(&s, (const size_t[4]){1, 0, 1, 0}, &one));
   assert_near(one.error[0], 0.1, 1e-7);
   assert_true(isnan(one.deviation[0]));
   assert_false(one.coloured);
+}
+
+/* A distance beyond all takes nothing from a colour; a pixel that lacks part of it is none. */
+TEST(what_is_not_finite_is_left_out_by_channel) {
+  static const char *const names[] = {"B", "G", "R", "Z"};
+  static const float data[] = {1, 1, 1, INFINITY, 3, 3, 3, INFINITY, 5, NAN, 8, 2};
+  FILLED(abbe_inspect, s, open_picture(&s, 3, 1, 4, names, data));
+  show(&s, 0, "colour", (abbe_inspect_look){0});
+  FILLED(abbe_inspect_probe, p, probe(&s, (const size_t[4]){0, 0, 2, 0}, &p));
+  assert_int_equal(p.odd, 1);
+  assert_near(p.mean[0], 3, 1e-7);
+  assert_near(p.mean[1], 2, 1e-7);
+  assert_near(p.mean[3], 2, 1e-7);
+  assert_near(p.xyz[1], 2, 1e-6);
+  assert_near(p.xy[0], 0.3127, 1e-4);
+  assert_int_equal(p.cloud_count, 2);
+  show(&s, 0, "Z", (abbe_inspect_look){0});
+  FILLED(abbe_inspect_probe, far, probe(&s, (const size_t[4]){0, 0, 1, 0}, &far));
+  assert_int_equal(far.odd, 2);
+  assert_true(isnan(far.mean[3]));
+  assert_near(far.xyz[1], 2, 1e-6);
 }
 
 TEST(polarised_light_has_a_degree_and_an_angle) {
