@@ -105,6 +105,22 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
+/* What the file lacks of camera, lights and objects. */
+static void report_left_out(const abbe_scene *scene) {
+  if (scene->camera.aperture > 0) fprintf(stderr, "camera: its aperture is left out\n");
+  if (scene->camera.polariser.kind != ABBE_POLARISER_NONE)
+    fprintf(stderr, "camera: its polariser is left out\n");
+  for (size_t i = 0; i < scene->light_count; i++)
+    if (scene->light[i].polariser.kind != ABBE_POLARISER_NONE)
+      fprintf(stderr, "%s: its polariser is left out\n", scene->light[i].name);
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *o = &scene->object[i];
+    if (o->coatings != NULL) fprintf(stderr, "%s: its coating is left out\n", o->name);
+    if (o->roughness != NULL) fprintf(stderr, "%s: its roughness is left out\n", o->name);
+    if (o->cloud) fprintf(stderr, "%s: it is left out\n", o->name);
+  }
+}
+
 /* Whether an object before this one is of its material. */
 static bool said(const abbe_scene *scene, size_t object) {
   for (size_t i = 0; i < object; i++)
@@ -116,13 +132,10 @@ static abbe_result report_pov(const request *q, const abbe_scene *scene, abbe_er
   cJSON *root = q->json ? cJSON_CreateObject() : NULL;
   cJSON *glasses = q->json ? cJSON_AddArrayToObject(root, "materials") : NULL;
   abbe_result result = ABBE_OK;
+  if (!q->json) report_left_out(scene);
   for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++) {
     const abbe_material *m = scene->object[i].material;
     abbe_pov_glass g;
-    if (scene->object[i].coatings != NULL && !q->json)
-      fprintf(stderr, "%s: its coating is left out\n", scene->object[i].name);
-    if (scene->object[i].roughness != NULL && !q->json)
-      fprintf(stderr, "%s: its roughness is left out\n", scene->object[i].name);
     if (abbe_object_kind_of(&scene->object[i]) != ABBE_OBJECT_REFRACTOR || said(scene, i)) continue;
     result = abbe_pov_file_glass(m, abbe_scene_illuminant(scene), &g, error);
     if (result != ABBE_OK) break;

@@ -122,6 +122,8 @@ typedef struct abbe_object {
   double axes_turned; /* by how much x was turned to be so, radians */
   abbe_material *own_material; /* refractor: that of its mesh's file, owned, or NULL */
   abbe_medium *medium;         /* refractor: what scatters in it, owned, or NULL */
+  bool cloud;                  /* refractor: a part of the one before it in which light is scattered
+                                  otherwise, without a surface of its own */
   abbe_coatings *coatings;     /* refractor: films on it, owned, or NULL */
   abbe_coatings *roughness;    /* refractor: its rough facets, owned; NULL: all are polished */
   double reflectance[3];       /* receiver: linear Rec.709, 0 to 1, as reflected_light.h lifts it;

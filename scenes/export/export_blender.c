@@ -241,6 +241,7 @@ static void write_glass(const abbe_export_writing *w, size_t i) {
 
 static abbe_result write_object(const abbe_export_writing *w, size_t i, abbe_error *error) {
   const abbe_object *o = &w->scene->object[i];
+  if (o->cloud) return ABBE_OK;
   char name[ABBE_EXPORT_NAME_SIZE], glass[ABBE_EXPORT_NAME_SIZE];
   double rgb[3];
   abbe_result result = ABBE_OK;

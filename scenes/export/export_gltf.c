@@ -429,6 +429,7 @@ static abbe_result build(building *b, abbe_error *error) {
     result = add_light(b, i, error);
   for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++) {
     const abbe_object *o = &scene->object[i];
+    if (o->cloud) continue;
     abbe_export_name(name, "o", i, o->name);
     result = add_surface(b, o, name, error);
     if (result == ABBE_OK)

@@ -166,6 +166,7 @@ static void write_mirror(const abbe_export_writing *w, const char *name, const a
 
 static abbe_result write_object(const abbe_export_writing *w, size_t i, abbe_error *error) {
   const abbe_object *o = &w->scene->object[i];
+  if (o->cloud) return ABBE_OK;
   char name[ABBE_EXPORT_NAME_SIZE], material[ABBE_EXPORT_NAME_SIZE];
   abbe_result result = ABBE_OK;
   abbe_export_name(name, "o", i, o->name);

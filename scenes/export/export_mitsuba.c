@@ -288,6 +288,7 @@ static void write_mirror(const abbe_export_writing *w, const abbe_object *o) {
 
 static abbe_result write_object(const abbe_export_writing *w, size_t i, abbe_error *error) {
   const abbe_object *o = &w->scene->object[i];
+  if (o->cloud) return ABBE_OK;
   const bool sphere = o->exact.kind == ABBE_EXACT_SPHERE;
   char name[ABBE_EXPORT_NAME_SIZE];
   abbe_result result = ABBE_OK;

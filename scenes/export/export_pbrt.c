@@ -236,6 +236,7 @@ static abbe_result write_material(const abbe_export_writing *w, size_t i, const 
 
 static abbe_result write_object(const abbe_export_writing *w, size_t i, abbe_error *error) {
   const abbe_object *o = &w->scene->object[i];
+  if (o->cloud) return ABBE_OK;
   char name[ABBE_EXPORT_NAME_SIZE];
   fprintf(w->file, "\n# %s\nAttributeBegin\n", abbe_export_name(name, "o", i, o->name));
   const abbe_result result = write_material(w, i, o, error);

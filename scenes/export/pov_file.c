@@ -304,6 +304,7 @@ static abbe_result write_scene(const writing *w, abbe_error *error) {
   for (size_t i = 0; i < w->scene->light_count; i++) write_light(w, &w->scene->light[i]);
   for (size_t i = 0; i < w->scene->object_count && result == ABBE_OK; i++) {
     const abbe_object *object = &w->scene->object[i];
+    if (object->cloud) continue;
     result = abbe_object_kind_of(object) == ABBE_OBJECT_REFRACTOR
                  ? write_refractor(w, object, error)
                  : write_receiver(w, object, error);
@@ -335,10 +336,15 @@ abbe_result abbe_pov_file_write(const char *path, const abbe_scene *scene,
     result = abbe_error_set(error, ABBE_UNSUPPORTED,
                             "the scene has an 'environment', which is not exported; leave it out, "
                             "and give the scene 'lights'");
-  if (result == ABBE_OK && abbe_scene_is_hazy(scene))
+  const char *hazy = scene->medium != NULL ? "a 'medium'" : NULL;
+  for (size_t i = 0; i < scene->object_count && hazy == NULL; i++)
+    if (scene->object[i].medium != NULL)
+      hazy = scene->object[i].cloud ? "a cloud under 'clouds'" : "a 'medium'";
+  if (result == ABBE_OK && hazy != NULL)
     result = abbe_error_set(error, ABBE_UNSUPPORTED,
-                            "the scene has a 'medium' that scatters light, which is not written "
-                            "for POV-Ray; leave it out");
+                            "the scene has %s that scatters light, which is not written for "
+                            "POV-Ray; leave it out",
+                            hazy);
   const abbe_object *mirror = abbe_scene_mirror(scene);
   if (result == ABBE_OK && mirror != NULL)
     result = abbe_error_set(error, ABBE_UNSUPPORTED,

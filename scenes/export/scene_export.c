@@ -90,6 +90,10 @@ static abbe_result survey_object(const survey *s, const abbe_object *o, double l
                                  abbe_error *error) {
   const abbe_object_kind kind = abbe_object_kind_of(o);
   abbe_result result = ABBE_OK;
+  if (o->cloud) {
+    LOST(s, o->name, "it is left out: what is around it goes on in it");
+    return ABBE_OK;
+  }
   if (o->exact.kind == ABBE_EXACT_SPHERE && !s->spheres)
     CHANGED(s, o->name, "the sphere is %zu triangles", o->mesh.face_count);
   if (kind == ABBE_OBJECT_REFRACTOR) result = add_glass(s, o->material, lambda_nm, error);

@@ -53,7 +53,8 @@ static abbe_result read_cloud(const abbe_object_reading *r, abbe_yaml_node node,
   size_t one = 1;
   const size_t size = strlen(stone->name) + 32;
   out->material = stone->material;
-  out->line = abbe_yaml_line(r->yaml, node);
+  out->line = stone->line;
+  out->cloud = true;
   out->name = malloc(size);
   if (out->name == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
   snprintf(out->name, size, "%s (cloud %zu)", stone->name, number);

@@ -13,6 +13,13 @@ TEST(a_scene_is_exported) {
   assert_int_equal(run_left(), 0);
 }
 
+TEST(what_povray_does_not_get_is_said) {
+  run_must("\"$abbe\" export \"$house\"/scenes/sphere.yaml -o s.pov --set 'camera.polariser={}' "
+           "--set 'objects.ball.clouds=[{radius: 0.01}]' && ! grep cloud s.pov && rm s.pov");
+  assert_contains(run_errors, "camera: its polariser is left out");
+  assert_contains(run_errors, "ball (cloud 1): it is left out");
+}
+
 TEST(materials_as_json) {
   HELD(cJSON, json) = run_json(
       "\"$abbe\" export \"$house\"/scenes/sphere.yaml -o s.pov --json --photons 5000 --samples 15 "

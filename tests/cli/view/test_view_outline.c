@@ -237,6 +237,9 @@ TEST(every_object_is_dragged_tilted_and_dropped) {
   static const char *const object[] = {
       "shape: brilliant, diameter: 0.01, stand: [0, 0, 0.1], material: diamond, setting: {kind: "
       "prongs, metal: gold}",
+      "shape: brilliant, diameter: 0.01, stand: [0, 0, 0.1], material: diamond, setting: {kind: "
+      "prongs, metal: gold}, clouds: [{radius: 0.0005},\n   {radius: 0.0004},\n   {radius: "
+      "0.0003}]",
       "shape: box, size: [0.02, 0.01, 0.006], centre: [0, 0, 0.1], reflectance: 0.4",
       "shape: sphere, radius: 0.01, transform: [{translate: [0, 0, 0.1]}], reflectance: 0.4",
       "shape: sphere, radius: 0.01, centre: [0, 0, 0.1], mirror: gold",
@@ -244,13 +247,15 @@ TEST(every_object_is_dragged_tilted_and_dropped) {
   static abbe_view_state s;
   const abbe_view_object *it = &s.outline.object[0];
   abbe_view_handle handle;
-  double xy[2];
+  double xy[2], underside = 0;
   for (size_t i = 0; i < sizeof object / sizeof *object; i++) {
     begin_with_object(&s, object[i]);
     assert_int_equal(s.outline.object_count, 2);
     assert_true(abbe_view_state_handle(&s, 0, &handle));
     assert_false(abbe_view_state_handle(&s, 1, &handle));
     assert_true(it->above > 0.08);
+    if (i == 1) assert_near(it->above, underside, 1e-12); /* clouds change nothing */
+    underside = it->above;
     assert_true(abbe_view_camera_project(&s.camera, 512, 512, it->middle, xy));
     drag(&s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0] + 60, xy[1], 0);
     learn(&s);

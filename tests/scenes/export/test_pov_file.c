@@ -219,6 +219,11 @@ TEST(what_cannot_be_is_refused) {
   abbe_scene_free(&scene);
   scene = scene_of(CAMERA FLOOR BALL("flat") "environment: {size: 64, uniform: 1}\n");
   REFUSED(ABBE_UNSUPPORTED, "'environment'", abbe_pov_file_write(never, &scene, NULL, &error));
+  abbe_scene_free(&scene);
+  scene = scene_of(
+      CAMERA POINT_LIGHT FLOOR BALL("flat, clouds: [{radius: 0.02, medium: {scattering: 7}}]"));
+  REFUSED(ABBE_UNSUPPORTED, "a cloud under 'clouds'",
+          abbe_pov_file_write(never, &scene, NULL, &error));
   assert_int_not_equal(access(never, F_OK), 0);
 }
 

@@ -255,6 +255,20 @@ TEST(an_aperture_is_lost) {
   clear_folder();
 }
 
+/* They have no surface; what stands after them is there. */
+TEST(clouds_are_left_out) {
+  for (int target = 0; target < ABBE_SCENE_EXPORT_COUNT; target++) {
+    OWNED(abbe_scene, scene) =
+        scene_of(CAMERA POINT_LIGHT FLOOR BALL("flat, clouds: [{radius: 0.02}]") BRICK("flat"));
+    char *text = written(&scene, (abbe_scene_export_target)target);
+    assert_true(noted(ABBE_NOTE_LOST, "ball (cloud 1)", "left out"));
+    assert_null(strstr(text, "ball__cloud_1_"));
+    assert_non_null(strstr(text, "o3_brick"));
+    done(text);
+  }
+  clear_folder();
+}
+
 /* Names become identifiers; what would end a comment does not. */
 TEST(names_do_no_harm) {
   abbe_scene scene = scene_of(CAMERA POINT_LIGHT FLOOR BALL("flat"));
