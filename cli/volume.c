@@ -183,7 +183,8 @@ static abbe_result find_object(const request *q, const abbe_scene *scene, size_t
   const char *names[ABBE_SCENE_MAX_OBJECTS];
   size_t count = 0;
   for (size_t i = 0; i < scene->object_count; i++) {
-    if (abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_RECEIVER) continue;
+    if (abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_RECEIVER || scene->object[i].cloud)
+      continue;
     names[count++] = scene->object[i].name;
     if (q->object == NULL || strcmp(q->object, scene->object[i].name) == 0) *out = i;
     if (q->object != NULL && *out == i) return ABBE_OK;

@@ -246,7 +246,7 @@ static bool may_have_layers(const abbe_scene *scene) {
   for (size_t i = 0; i < scene->object_count && may; i++) {
     const abbe_object *o = &scene->object[i];
     const bool refracts = abbe_object_kind_of(o) == ABBE_OBJECT_REFRACTOR;
-    may = !refracts || (o->medium == NULL && !abbe_reach_is_entered(scene, o));
+    may = !refracts || (o->medium == NULL && !o->cloud && !abbe_reach_is_entered(scene, o));
   }
   return may;
 }

@@ -173,7 +173,8 @@ abbe_result abbe_support_nesting(const abbe_scene *scene, const abbe_plan *plan,
   for (size_t i = 0; i < scene->object_count; i++)
     for (size_t k = 0; k < scene->object_count; k++) {
       const abbe_object *outer = &scene->object[i], *inner = &scene->object[k];
-      if (i == k || abbe_object_kind_of(outer) != ABBE_OBJECT_REFRACTOR ||
+      if (i == k || (inner->cloud && !abbe_scene_is_hazy(scene)) ||
+          abbe_object_kind_of(outer) != ABBE_OBJECT_REFRACTOR ||
           abbe_object_kind_of(inner) != ABBE_OBJECT_REFRACTOR || !holds_part(outer, inner))
         continue;
       return abbe_error_set(error, ABBE_UNSUPPORTED,

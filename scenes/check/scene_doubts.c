@@ -40,7 +40,7 @@ static void find_names(const abbe_scene *scene, abbe_scene_doubts *out) {
 }
 
 static bool is_shown(const abbe_object *object) {
-  return abbe_object_kind_of(object) != ABBE_OBJECT_RECEIVER;
+  return abbe_object_kind_of(object) != ABBE_OBJECT_RECEIVER && !object->cloud;
 }
 
 static void middle(const abbe_object *object, double out[3]) {

@@ -32,7 +32,8 @@ static void view_meet(const abbe_scene *scene, const double origin[3], const dou
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *object = &scene->object[i];
     const abbe_mesh *m = &object->mesh;
-    const bool may = !bending || abbe_object_kind_of(object) != ABBE_OBJECT_RECEIVER;
+    const bool may =
+        !object->cloud && (!bending || abbe_object_kind_of(object) != ABBE_OBJECT_RECEIVER);
     for (size_t f = 0; may && f < m->face_count; f++) {
       const uint32_t *at = m->face[f];
       const double d = distance_to(origin, direction, m->position[at[0]], m->position[at[1]],

@@ -34,7 +34,7 @@ static void look_closer(const abbe_scene *scene, abbe_render_desc *desc) {
   double least = INFINITY, min[3], max[3];
   if (scene == NULL || !abbe_scene_bounds(scene, true, false, min, max)) return;
   for (size_t i = 0; i < scene->object_count; i++)
-    if (abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_REFRACTOR)
+    if (abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_REFRACTOR && !scene->object[i].cloud)
       least = fmin(least, diagonal(scene->object[i].min, scene->object[i].max));
   const double times = fmax(diagonal(min, max) / least, 1);
   if (desc->photons < PHOTONS) desc->photons = (size_t)fmin(times * (double)desc->photons, PHOTONS);

@@ -50,10 +50,12 @@ bool abbe_refractor_films_by_face(const abbe_object *object) {
          (object->exact.kind != ABBE_EXACT_CONVEX || !abbe_refractor_films(object, NULL));
 }
 
-/* Whether light goes through the object as through air: clear, of air's index, and no bubble. */
+/* Whether light goes through the object as through air: clear, of air's index, and no bubble; or a
+ * cloud as through what is around it. */
 static bool is_invisible(const abbe_scene *scene, const abbe_object *object,
                          const abbe_plan *plan) {
   abbe_material_range range;
+  if (object->cloud) return !abbe_scene_is_hazy(scene);
   if (abbe_method_of(plan->desc.profile)->printed || object->medium != NULL ||
       object->coatings != NULL ||
       abbe_material_range_make(object->material, plan->desc.min_nm, plan->desc.max_nm, &range,
@@ -79,12 +81,13 @@ static bool is_convex(const abbe_mesh *mesh, abbe_plan_shape *known) {
 /* Why light that has left a refractor may meet one again, or a receiver within; NULL: it cannot. */
 static const char *why_in_turn(const abbe_scene *scene, abbe_plan *plan) {
   const abbe_object *only = NULL;
-  size_t refractors = 0;
+  size_t refractors = 0, clouds = 0;
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *o = &scene->object[i];
     if (abbe_object_kind_of(o) != ABBE_OBJECT_REFRACTOR || is_invisible(scene, o, plan)) continue;
     only = o;
     refractors++;
+    clouds += o->cloud;
   }
   if (abbe_method_of(plan->desc.profile)->own_passes) return NULL;
   if (abbe_scene_mirror(scene) != NULL) return "what a mirror sends on may meet a surface again";
@@ -93,7 +96,8 @@ static const char *why_in_turn(const abbe_scene *scene, abbe_plan *plan) {
   if (plan->desc.model == ABBE_MODEL_BVH) return "as asked";
   if (plan->desc.transport == ABBE_TRANSPORT_PINHOLE)
     return "light of all around is followed from every receiver";
-  if (refractors > 1) return "there is more than one refractor";
+  if (refractors - clouds > 1) return "there is more than one refractor";
+  if (clouds > 0) return "clouds in the refractor scatter otherwise than it does";
   if (scene->camera.inside && plan->around_eye != NULL) return "the eye is inside a refractor";
   if (abbe_refractor_films_by_face(only)) return "films are on some of the refractor's faces";
   if (only->exact.kind != ABBE_EXACT_SPHERE && only->exact.kind != ABBE_EXACT_CONVEX &&
@@ -270,14 +274,18 @@ static abbe_result check_eye(const abbe_scene *scene, const abbe_plan *plan, abb
                         around->name, around->line, MAX_FOLLOWED);
 }
 
-/* What is left out of the lists of refractors would not be met by a mirror's light. */
-static abbe_result check_followed(const abbe_plan *plan, abbe_error *error) {
-  if (plan->mirror_count == 0 || plan->refractor_count <= MAX_FOLLOWED) return ABBE_OK;
+/* What is left out of the lists of refractors would not be met by a mirror's light, and a cloud
+ * would have a surface. */
+static abbe_result check_followed(const abbe_scene *scene, const abbe_plan *plan,
+                                  abbe_error *error) {
+  bool clouds = false;
+  for (size_t i = 0; i < plan->refractor_count; i++)
+    clouds = clouds || scene->object[plan->refractor_object[i]].cloud;
+  if ((plan->mirror_count == 0 && !clouds) || plan->refractor_count <= MAX_FOLLOWED) return ABBE_OK;
   return abbe_error_set(
       error, ABBE_UNSUPPORTED,
-      "light is followed off mirrors among at most %d refractors and mirrors; the "
-      "scene has %zu",
-      MAX_FOLLOWED, plan->refractor_count);
+      "light is followed %s among at most %d refractors, mirrors and clouds; the scene has %zu",
+      clouds ? "through clouds" : "off mirrors", MAX_FOLLOWED, plan->refractor_count);
 }
 
 abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan,
@@ -294,14 +302,16 @@ abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan
                             MAX_REFRACTORS);
     if (!mirror && is_invisible(scene, object, plan)) {
       list_model(plan, i, object->name,
-                 "clear, and its index is that of air: light does not notice it", &unlisted);
+                 object->cloud ? "as clear as what is around it: light does not notice it"
+                               : "clear, and its index is that of air: light does not notice it",
+                 &unlisted);
       continue;
     }
     abbe_result result = mirror ? add_mirror(scene, i, plan, &unlisted, error)
                                 : add_refractor(scene, i, plan, &unlisted, error);
     if (result != ABBE_OK) return result;
   }
-  abbe_result result = check_followed(plan, error);
+  abbe_result result = check_followed(scene, plan, error);
   if (result == ABBE_OK) result = check_eye(scene, plan, error);
   if (result != ABBE_OK) return result;
   if (unlisted > 0)

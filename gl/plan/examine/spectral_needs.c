@@ -449,7 +449,8 @@ static void note_covered_films(const abbe_scene *scene, const abbe_object *objec
                                abbe_plan *plan) {
   for (size_t r = 0; r < plan->refractor_count; r++) {
     const abbe_object *other = object_of(scene, plan, r);
-    if (other == object || plan->mirror[r] || !abbe_reach_overlap(object, other)) continue;
+    if (other == object || other->cloud || plan->mirror[r] || !abbe_reach_overlap(object, other))
+      continue;
     abbe_plan_note(plan, "%s: its films are left out where it touches another refractor, as '%s'",
                    object->name, other->name);
     return;

@@ -94,7 +94,8 @@ TEST(mirrors_are_followed_among_so_many) {
              "- {name: b%d, shape: box, size: [0.1, 0.1, 0.1], material: flat, transform: "
              "[{translate: [%g, 0.3, 0.2]}]}\n",
              i, 0.2 * i - 3);
-  refuse_plan(text, NULL, ABBE_UNSUPPORTED, "at most 32 refractors and mirrors; the scene has 33");
+  refuse_plan(text, NULL, ABBE_UNSUPPORTED,
+              "off mirrors among at most 32 refractors, mirrors and clouds; the scene has 33");
 }
 
 TEST(a_map_layout_belongs_to_its_light) {

@@ -51,6 +51,30 @@ TEST(murky_glass_attenuates) {
   assert_near(plan.eye_haze.scattering, 0, 0);
 }
 
+/* Clouds are followed, and those that nothing tells apart from what is around them are not. */
+TEST(clouds_count_where_they_scatter) {
+  static const struct {
+    const char *cloud;
+    size_t count;
+    const char *why;
+  } rows[] = {{"{radius: 0.02, medium: {scattering: 3}}", 2, "clouds in the refractor"},
+              {"{radius: 0.02}", 1, "light that leaves the refractor cannot meet it again"}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    FILLED(abbe_plan, plan,
+           plan_text(printed(CAMERA POINT_LIGHT FLOOR BALL("flat, clouds: [%s]"), rows[i].cloud),
+                     NULL, &plan));
+    assert_int_equal(plan.refractor_count, rows[i].count);
+    assert_contains(abbe_plan_find(&plan, ABBE_CHOICE_MULTI_REFRACTOR_PATHS, 0)->reason,
+                    rows[i].why);
+  }
+  char text[4096] = CAMERA POINT_LIGHT FLOOR
+      "- {name: ball, shape: sphere, radius: 0.08, material: flat, transform: [{translate: [0, 0, "
+      "0.2]}], clouds: [";
+  for (int i = 0; i < 32; i++) strcat(text, "{radius: 0.01, medium: {scattering: 3}}, ");
+  strcat(text, "]}\n");
+  refuse_plan(text, NULL, ABBE_UNSUPPORTED, "through clouds among at most 32");
+}
+
 /* Of white light red goes first; what is in the water is seen through its surface. */
 TEST(blue_water) {
   OWNED(abbe_scene, scene) = shipped_scene("water/shafts");

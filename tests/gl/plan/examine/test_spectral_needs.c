@@ -39,6 +39,13 @@ TEST(films_are_noted) {
   abbe_plan_free(&plan);
   plan_text(printed("%s%s", head, BALL("n-bk7, coating: {layers: [[1.38, 0.5]]}")), NULL, &plan);
   assert_true(is_noted(&plan, "a layer of its film is 0.5 nm"));
+  abbe_plan_free(&plan); /* a cloud covers none of it */
+  plan_text(printed("%s%s", head,
+                    BALL("n-bk7, coating: {layers: [[1.38, 99.638]]}, clouds: "
+                         "[{radius: 0.01, medium: {scattering: 3}}]")),
+            NULL, &plan);
+  assert_int_equal(plan.refractor_count, 2);
+  assert_false(is_noted(&plan, "films are left out"));
 }
 
 TEST(all_that_is_to_say_is_noted) {
