@@ -15,7 +15,6 @@
 #define MARK 0xffd75e
 #define TILES_S 0.03 /* of each frame, for tiles that are not there yet */
 #define CLICK 3.0    /* pixels that a click may move */
-#define MOST_ZOOM 64.0
 enum { LIGHTS = 64, MOST_PAIRS = 12 };
 
 typedef abbe_view_inspection inspection;
@@ -135,14 +134,6 @@ static void mark(inspection *i, const size_t size[2], const double from[2], cons
   i->picked = true;
 }
 
-static void turn_wheel(inspection *i, const size_t size[2], const double mouse[2], double clicks) {
-  abbe_inspect *s = i->pictures;
-  const double before = s->zoom, least = fmin(1, 16.0 / (double)shown_of(i)->image.width);
-  s->zoom = fmin(MOST_ZOOM, fmax(least, before * pow(1.25, fmax(-20, fmin(20, clicks)))));
-  for (int k = 0; k < 2; k++) /* what is under the pointer stays there */
-    s->centre[k] += (mouse[k] - 0.5 * (double)size[k]) * (1 / before - 1 / s->zoom);
-}
-
 /* While the picture is moved: how long from one to the next. */
 static void time_frame(abbe_view_session *app) {
   const double now = abbe_clock_seconds();
@@ -178,7 +169,7 @@ static void feed(abbe_view_session *app, const abbe_ui_input *in, const size_t s
     if (i->held == 1) probe(app);
     i->held = 0;
   }
-  if (inside && in->wheel != 0) turn_wheel(i, size, at, in->wheel);
+  if (inside && in->wheel != 0) abbe_inspect_wheel(i->pictures, size, at, in->wheel);
 }
 
 /* ---- panel ---- */

@@ -110,6 +110,10 @@ abbe_result abbe_inspect_show(abbe_inspect *inspect, size_t at, const abbe_inspe
 
 /* The whole picture into so many pixels of the screen. */
 void abbe_inspect_fit(abbe_inspect *inspect, size_t width, size_t height);
+/* Nearer by so many clicks of a wheel, from the whole picture or 16 pixels of its larger side on;
+ * what is under that place of the screen stays there. */
+void abbe_inspect_wheel(abbe_inspect *inspect, const size_t size[2], const double place[2],
+                        double clicks);
 /* The pixel of the image under a place of the screen; false: beside it. */
 bool abbe_inspect_pixel(const abbe_inspect *inspect, const size_t size[2], const double place[2],
                         size_t pixel[2]);

@@ -11,6 +11,7 @@
 enum { SIDE = 64, SAMPLES = 256 * 256 };
 #define LOWEST (-10.0) /* stops of the histogram of colours, from 0.18 */
 #define HIGHEST 6.0
+#define MOST_ZOOM 64.0
 
 void abbe_inspect_tiles_free(abbe_inspect_picture *p) {
   for (size_t l = 0; l < ABBE_INSPECT_LEVELS; l++) {
@@ -157,11 +158,26 @@ abbe_result abbe_inspect_show(abbe_inspect *s, size_t at, const abbe_inspect_loo
   return measure(s, p, error);
 }
 
+/* The zoom at which the whole picture is seen. */
+static double whole_zoom(const abbe_image *image, size_t width, size_t height) {
+  return fmin((double)width / (double)image->width, (double)height / (double)image->height);
+}
+
+void abbe_inspect_wheel(abbe_inspect *s, const size_t size[2], const double place[2],
+                        double clicks) {
+  const abbe_image *image = &s->picture[s->at].image;
+  const double side = fmax((double)image->width, (double)image->height), before = s->zoom;
+  const double least = fmin(fmin(1, 16 / side), whole_zoom(image, size[0], size[1]));
+  s->zoom = fmin(MOST_ZOOM, fmax(least, before * pow(1.25, fmax(-20, fmin(20, clicks)))));
+  for (int k = 0; k < 2; k++)
+    s->centre[k] += (place[k] - 0.5 * (double)size[k]) * (1 / before - 1 / s->zoom);
+}
+
 void abbe_inspect_fit(abbe_inspect *s, size_t width, size_t height) {
   const abbe_image *image = &s->picture[s->at].image;
   s->centre[0] = 0.5 * (double)image->width;
   s->centre[1] = 0.5 * (double)image->height;
-  s->zoom = fmin((double)width / (double)image->width, (double)height / (double)image->height);
+  s->zoom = whole_zoom(image, width, height);
   if (s->zoom > 1) s->zoom = fmin(floor(s->zoom), 32);
 }
 

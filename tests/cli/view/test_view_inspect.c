@@ -89,6 +89,34 @@ TEST(pixels_are_the_encoded_light_and_nothing_is_beside) {
   assert_int_equal(pixel[1], 0);
 }
 
+/* However narrow a picture is, outward means smaller, at least until all of it is seen. */
+TEST(the_wheel_zooms_about_the_pointer) {
+  enum { HIGH = 3000 };
+  static const char *const names[] = {"Z"};
+  static float data[HIGH];
+  static const size_t size[2] = {100, 100};
+  static const double place[2] = {50, 20.01};
+  size_t pixel[2], there[2];
+  FILLED(abbe_inspect, s, open_picture(&s, 1, HIGH, 1, names, data));
+  abbe_inspect_fit(&s, size[0], size[1]);
+  const double whole = s.zoom;
+  assert_near(whole, 100.0 / HIGH, 1e-12);
+  abbe_inspect_wheel(&s, size, place, -1);
+  assert_near(s.zoom, whole / 1.25, 1e-12);
+  abbe_inspect_wheel(&s, size, place, -20);
+  assert_near(s.zoom, 16.0 / HIGH, 1e-12);
+  abbe_inspect_fit(&s, size[0], size[1]);
+  assert_true(abbe_inspect_pixel(&s, size, place, pixel));
+  for (int i = 0; i < 60; i++) abbe_inspect_wheel(&s, size, place, 1);
+  assert_near(s.zoom, 64, 0);
+  assert_true(abbe_inspect_pixel(&s, size, place, there));
+  assert_int_equal(there[1], pixel[1]);
+  /* a window of few pixels still shows all */
+  abbe_inspect_wheel(&s, (const size_t[2]){8, 8}, place, -20);
+  for (int i = 0; i < 3; i++) abbe_inspect_wheel(&s, (const size_t[2]){8, 8}, place, -20);
+  assert_near(s.zoom, 8.0 / HIGH, 1e-12);
+}
+
 TEST(what_is_smaller_is_the_mean_of_its_pixels_in_every_tile) {
   static const char *const names[] = {"Y", "a.Z"};
   enum { SIDE = 200 };
