@@ -38,6 +38,8 @@ abbe_result abbe_view_inspect_begin(abbe_view_session *app, abbe_error *error) {
   i->stale = true;
   i->at = i->pictures->at;
   i->look = i->pictures->look;
+  i->given[0] = i->look.view.from;
+  i->given[1] = i->look.view.to;
   if (i->look.wavelength_nm == 0) i->look.wavelength_nm = 550;
   abbe_result result = abbe_display_list(app->ocio, &app->views, error);
   if (result == ABBE_OK)
@@ -208,24 +210,34 @@ static void draw_file(abbe_view_session *app) {
   if (app->note[0] != '\0') abbe_ui_text(WARM, app->note);
 }
 
-/* Chooses a light by the list; `none` stands for no choice. */
+/* The entry of its name behind the first one; 0: there is no light. */
+static size_t find_light(const char *const *names, size_t count, const abbe_illuminant *light) {
+  size_t k = 1;
+  while (light != NULL && k < count && strcmp(names[k], abbe_illuminant_name(light)) != 0) k++;
+  return light != NULL ? k : 0;
+}
+
+/* Chooses a light by the list, where the one that was given is too; `none` stands for no choice. */
 static void choose_light(abbe_view_session *app, const char *label, const char *none, int which,
                          const abbe_illuminant **light) {
   inspection *i = &app->inspection;
-  const char *names[LIGHTS + 1] = {none};
-  size_t count = 1, at = i->light[which];
+  const abbe_illuminant *given = i->given[which];
+  const char *names[LIGHTS + 2] = {none};
+  size_t count = 1;
   abbe_error error = {0};
   while (count <= LIGHTS && (names[count] = abbe_illuminant_listed(count - 1)) != NULL) count++;
+  const size_t own = find_light(names, count, given);
+  if (own == count) names[count++] = abbe_illuminant_name(given);
+  size_t at = find_light(names, count, *light);
   if (!abbe_ui_choose(label, names, NULL, count, &at)) return;
   abbe_illuminant made = {0};
-  if (at > 0 && abbe_illuminant_make(names[at], &made, &error) != ABBE_OK) {
+  if (at > 0 && at != own && abbe_illuminant_make(names[at], &made, &error) != ABBE_OK) {
     snprintf(app->note, sizeof app->note, "%s", error.text);
     return;
   }
   abbe_illuminant_free(&i->made[which]);
   i->made[which] = made;
-  i->light[which] = at;
-  *light = at > 0 ? &i->made[which] : NULL;
+  *light = at == 0 ? NULL : at == own ? given : &i->made[which];
   forget(i);
 }
 

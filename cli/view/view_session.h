@@ -37,9 +37,10 @@ typedef struct abbe_view_inspection {
   abbe_inspect *pictures; /* NULL: a scene is shown instead */
   abbe_inspect_look look; /* as it is wished, of picture `at`; */
   size_t at;
-  bool stale, whole;       /* it is not shown yet; no tile is missing */
-  size_t light[2];         /* of the lists of lights: that of the scene, and another; 0: none */
-  abbe_illuminant made[2]; /* and what they are */
+  bool stale, whole; /* it is not shown yet; no tile is missing */
+  const abbe_illuminant
+      *given[2];           /* on the command line: light of the scene, and another; or NULL */
+  abbe_illuminant made[2]; /* those that were chosen instead */
   int held;                /* 1: the pointer marks a region, 2: it moves the picture; 0: neither */
   double pressed[2];       /* where that began */
   bool picked;

@@ -236,13 +236,18 @@ TEST(pictures_are_looked_at) {
       "\"$abbe\" pixel bands.exr 20,16 > pixel && awk '/^  XYZ/ { print $3 }' pixel > is && awk "
       "'/^Y/ { printf \"%.6g\\n\", $2 }' said > said.Y && diff is said.Y");
   run_must("! cmp -s colour.png bright.png");
+  /* lights that are given are those that the lists begin at */
+  run_must("printf '%s\\n' 'wait rest' 'click 41,33' 'remember x lit' 'choose illuminant \"the "
+           "same\"' 'wait rest' 'assert x != $lit' 'remember Y same' 'choose \"lit by\" \"not "
+           "known\"' 'wait rest' 'assert Y != $same' > b.txt");
+  run_must("\"$abbe\" view bands.exr --size 436x64 --lit-by D5000 --illuminant A --script b.txt");
   run_fails("\"$abbe\" view bands.exr --script a.txt --lit-by moon", 1, "moon");
   run_fails("\"$abbe\" view bands.exr --script a.txt --illuminant A", 1,
             "does not say which light it was made with");
   run_must("head -c 300 bands.exr > cut.exr");
   run_fails("\"$abbe\" view bands.exr cut.exr --script a.txt", 1, "cut.exr");
   run_fails("\"$abbe\" view bands.webp --script a.txt", 1, ".exr, .hdr, .pic and .png");
-  run_clears("rm *.exr *.png a.txt said said.Y is pixel");
+  run_clears("rm *.exr *.png a.txt b.txt said said.Y is pixel");
 }
 
 TEST(without_a_display) {
