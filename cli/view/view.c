@@ -323,7 +323,7 @@ int abbe_command_view(int argc, char **argv) {
       "looks about, and w a s d q e fly meanwhile. Drag a ring to move a lamp or an\n"
       "object: shift upright, control tilts, g drops. Click for a pixel's spectrum.\n"
       "b: rendered or traced, v: their difference, + -: exposure, control z and y:\n"
-      "back and forth, control s: keep, t: turntable.\n"
+      "back and forth, control s: keep, t: turntable, h: these keys.\n"
       "Pictures (.exr, .hdr, .pic, .png): click for a pixel, drag for a region, right\n"
       "drag moves, the wheel zooms, b: the other picture, v: their difference,\n"
       "c: false colours, + - e: exposure, f: all of it, 1: pixel by pixel.\n\n"
