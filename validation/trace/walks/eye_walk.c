@@ -395,6 +395,7 @@ static void follow_off(const abbe_eye_context *c, const abbe_eye_path *first, co
       mirror_on(c, &p, hit);
     else
       scatter_rough(c, &p, hit, x);
+    p.steps += spreads; /* the next facet needs other numbers */
     if (p.share > 0) follow(c, &p);
   }
 }

@@ -297,3 +297,54 @@ TEST(mirrors_turn_light_and_give_it_back) {
   assert_near(right[2], -1, 1e-6);
   free_kinds(&k);
 }
+
+/* What a rough face shows of a light is the density with which it sends light there: by cosine to
+ * the face, over both sides in air. */
+static void check_looks(const abbe_media *m, int from, int to, double alpha, double cosine) {
+  enum { BANDS = 10, PATHS = 20000 };
+  const double sine = sqrt(1 - cosine * cosine), pi = 3.14159265358979;
+  double sent[2 * BANDS] = {0}, shown[2 * BANDS] = {0}, square[2 * BANDS] = {0};
+  abbe_rough_look look[2 * BANDS];
+  uint64_t random = 9;
+  const abbe_wave_face face = {.from = from,
+                               .to = to,
+                               .film = -1,
+                               .entering = from < 0,
+                               .n = {0, 0, 1},
+                               .d = {(float)sine, 0, (float)-cosine},
+                               .rough = (float)alpha};
+  for (uint32_t i = 0; i < PATHS; i++) {
+    for (int b = 0; b < 2 * BANDS; b++) {
+      const double z = (b - BANDS + random_between(&random, 0, 1)) / BANDS, r = sqrt(1 - z * z),
+                   angle = random_between(&random, 0, 2 * pi);
+      look[b].to[0] = (float)(r * cos(angle));
+      look[b].to[1] = (float)(r * sin(angle));
+      look[b].to[2] = (float)z;
+    }
+    const uint32_t key[4] = {i, 1, 2, 3};
+    abbe_wave_way way;
+    abbe_media_roughen(m, &face, 3, 0.5f, key, look, 2 * BANDS, &way);
+    const int at = (int)floorf(way.d[2] * BANDS) + BANDS;
+    sent[at < 2 * BANDS ? at : 2 * BANDS - 1] += (double)way.share / PATHS;
+    for (int b = 0; b < 2 * BANDS; b++) {
+      const double value = (double)look[b].density * 2 * pi / BANDS;
+      shown[b] += value / PATHS;
+      square[b] += value * value / PATHS;
+    }
+  }
+  for (int b = 0; b < 2 * BANDS; b++) {
+    if ((b < BANDS ? to : from) >= 0) continue;
+    const double error = sqrt((square[b] + sent[b]) / PATHS);
+    assert_near(sent[b], shown[b], 4.5 * error + 1e-4);
+  }
+}
+
+TEST(a_rough_face_shows_lights_as_it_sends_light) {
+  static const double alpha[] = {0.15, 0.6}, cosine[] = {0.95, 0.5};
+  const double lambda_nm[11] = {500, 510, 520, 530, 540, 550, 560, 570, 580, 590, 600};
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
+  MADE(abbe_geometry, g, abbe_geometry_make(&scene, &g, &error));
+  MADE(abbe_media, m, abbe_media_make(&g, lambda_nm, 10, &m, &error));
+  for (int i = 0; i < 8; i++)
+    check_looks(&m, i < 4 ? -1 : 0, i < 4 ? 0 : -1, alpha[i & 1], cosine[i >> 1 & 1]);
+}

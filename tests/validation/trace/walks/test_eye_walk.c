@@ -12,11 +12,11 @@
 #define SLAB(material)                                                                             \
   "- {name: slab, shape: box, size: [0.4, 0.4, 0.1], transform: [{translate: [0.1, 0, 0.3]}], "    \
   "material: " material "}\n"
+#define GROUND "- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0}\n"
 #define GLASS_ONLY(material)                                                                       \
   "objects:\n"                                                                                     \
   "- {name: ball, shape: sphere, radius: 0.08, transform: [{translate: [0.1, 0, 0.3]}], "          \
-  "material: " material "}\n"                                                                      \
-  "- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0}\n"
+  "material: " material "}\n" GROUND
 
 typedef struct fixture {
   abbe_scene scene;
@@ -262,6 +262,26 @@ TEST(a_white_furnace_from_within) {
       assert_near(mean[k], 2.25, 4 * error[k]);
       assert_true(error[k] < 0.02);
     }
+  }
+}
+
+/* A slab with two rough faces between camera and light: what the faces show of a light without size
+ * is what paths find of a small disk. */
+TEST(rough_faces_show_lights_of_any_size) {
+  static const char *const lights[] = {
+      LIGHT("kind: point, position: [1.2, 0, -2.7], intensity: 1"),
+      LIGHT("kind: disk, position: [1.2, 0, -2.7], target: [0.1, 0, 0.3], radius: 0.4, radiance: "
+            "1.98943679")};
+  double mean[2][3], error[2][3];
+  for (int i = 0; i < 2; i++) {
+    OWNED(fixture, f) = {0};
+    make_with(printed(DOWN "%sobjects:\n" SLAB("flat, roughness: 0.6") GROUND, lights[i]),
+              &(abbe_trace_desc){.width = 4, .height = 4, .no_map = true, .threads = 1}, 1, &f);
+    look(&f, 300, mean[i], error[i]);
+  }
+  for (int k = 0; k < 3; k++) {
+    assert_near(mean[0][k], mean[1][k], 4 * hypot(error[0][k], error[1][k]));
+    assert_true(error[0][k] < 0.02 * mean[0][k] && error[1][k] < 0.03 * mean[0][k]);
   }
 }
 
