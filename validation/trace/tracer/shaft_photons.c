@@ -77,7 +77,7 @@ void abbe_shaft_photons_take(void *user, const abbe_light_stretch *from) {
   abbe_shaft_photons *s = user;
   const abbe_haze *h = &s->media->haze;
   float near = 0, far = from->length, random[4], density, p[3];
-  if (abbe_haze_turns(h, from->medium) && (s->found || from->turned)) return;
+  if (abbe_haze_turns(h, from->medium) && (s->found || from->known)) return;
   if (!abbe_haze_scatters(h, from->medium) ||
       !abbe_haze_clip(h, from->medium, from->o, from->d, &near, &far) || !(far < INFINITY))
     return;

@@ -5,7 +5,8 @@
  * once, unbiased; nearer than a distance it does not, where few would add much. All are kept for
  * gathers along paths of the camera. The path goes on with what is left of it, whatever happened
  * here. In a refractor whose haze scatters more than once paths of the camera are turned too, and
- * find all light but that of lights without size at its first turn.
+ * find all light but that of lights without size at its first turn, where its first interface was
+ * not a rough face.
  *
  * Internal to validation/.
  */

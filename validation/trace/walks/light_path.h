@@ -33,6 +33,7 @@ typedef struct abbe_light_path {
   uint8_t wave;          /* in a crystal: which of its two */
   float stokes[3];       /* of polarised light, outside of crystals */
   bool turned, frosted;  /* by haze in a refractor; at a rough face */
+  bool shown;            /* its first interface was one */
 } abbe_light_path;
 
 /* Along the ray of lane k, which Embree has been through. */
@@ -46,7 +47,7 @@ static inline abbe_light_stretch abbe_light_path_stretch(const abbe_light_path *
   out.id = s->id;
   out.steps = s->steps;
   out.medium = abbe_media_of(s->inside);
-  out.turned = s->turned;
+  out.known = s->turned || s->shown;
   out.wave = s->wave;
   abbe_ray_take(rays, k, out.o, out.d);
   return out;

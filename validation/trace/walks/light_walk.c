@@ -129,6 +129,7 @@ static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, abb
   meet_interface(r->w, s, p, k);
   if (p->rough[k] > 0 && !s->frosted) r->ledger->frosted += (double)(s->y * s->flux);
   s->frosted = s->frosted || p->rough[k] > 0;
+  if (first) s->shown = s->frosted;
   return ++s->steps >= ABBE_INNER_MAX_STEPS ? LOST : left ? SCATTERS : NOT_COUNTED;
 }
 

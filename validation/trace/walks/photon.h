@@ -26,7 +26,8 @@ typedef struct abbe_light_stretch {
   float within;
   uint32_t id, steps; /* number of the photon; interfaces met so far */
   int medium;         /* the refractor that it is in, or -1: the air */
-  bool turned;        /* a refractor's haze has scattered it before */
+  bool known;         /* paths of the camera that a refractor's haze turns find such light: haze has
+                         scattered it before, or its first interface was a rough face */
   uint8_t wave;       /* in a crystal: which of its two */
 } abbe_light_stretch;
 

@@ -14,10 +14,17 @@ static const char *const bodies[] = {
 };
 enum { BODIES = sizeof bodies / sizeof *bodies };
 
+static void count_known(void *user, const abbe_light_stretch *stretch) {
+  size_t *count = user;
+  count[stretch->known]++;
+}
+
 TEST(every_watt_is_in_the_ledger) {
   for (int i = 0; i < BODIES; i++) {
     FREED fixture *f = malloc(sizeof *f);
     make(printed(SCENE SLAB("%s"), bodies[i]), NULL, f);
+    size_t count[2] = {0};
+    abbe_light_walk_watch(f->walk, count_known, count);
     flood(f, 8);
     const abbe_light_ledger *l = &f->ledger;
     assert_near(l->deposited + l->absorbed + l->missed + l->lost, l->reached, 1e-5 * l->reached);
@@ -28,6 +35,9 @@ TEST(every_watt_is_in_the_ledger) {
     else if (i < 3)
       assert_near(l->frosted, l->reached, 1e-6 * l->reached);
     assert_true(i < 3 ? l->turned == 0 : l->turned > 0.2 * l->reached);
+    /* all that comes in by a rough face is known from there on, else what haze has turned */
+    assert_true((count[0] > 0) == (i == 1 || i == 3 || i == 4));
+    assert_true((count[1] > 0) == (i != 1));
     assert_true(l->turned <= l->reached && l->frosted <= l->reached);
     fixture_free(f);
   }
