@@ -192,8 +192,17 @@ read_all(const abbe_object_reading *r, const char *key, const abbe_material_tabl
   *out = calloc(1, sizeof **out);
   if (*out == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for coatings");
   abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < count && result == ABBE_OK; i++)
-    result = read(r, many ? abbe_yaml_item(r->yaml, node, i) : node, table, *out, error);
+  bool whole = false;
+  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+    const abbe_yaml_node item = many ? abbe_yaml_item(r->yaml, node, i) : node;
+    result = read(r, item, table, *out, error);
+    if (result != ABBE_OK || (*out)->coating[i].faces != NULL) continue;
+    if (whole)
+      result =
+          abbe_yaml_fail(r->yaml, item, error,
+                         "'%s' has a second entry for all of the object: give it 'faces'", key);
+    whole = true;
+  }
   return result;
 }
 

@@ -32,6 +32,9 @@ static abbe_result read_shape(const abbe_object_reading *r, abbe_yaml_node node,
     result = abbe_yaml_get_lengths(r->yaml, node, "centre", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR,
                                    middle, error);
   if (result != ABBE_OK) return result;
+  if (!(round ? surface->radius > 0 : size[0] > 0 && size[1] > 0 && size[2] > 0))
+    return abbe_yaml_fail(r->yaml, round ? abbe_yaml_get(r->yaml, node, "radius") : box, error,
+                          "the '%s' of a cloud is above 0", round ? "radius" : "size");
   return round ? abbe_shape_sphere(surface->radius, LEVELS, out, error)
                : abbe_shape_box(size, out, error);
 }

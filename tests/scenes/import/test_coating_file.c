@@ -121,6 +121,7 @@ TEST(facets_are_rough_by_name) {
       {"{faces: table}", "alpha"},
       {"{alpha: 0.3, faces: [culet]}", "has no facet 'culet'; facets are named table"},
       {"[]", "1 to 16 entries, not 0"},
+      {"[0.3, 0.4]", "'roughness' has a second entry for all of the object"},
       {"0.3, brushed: {along: [1, 0, 0]}", "what refracts has no grooves here"},
   };
   FILLED(folder, f, make_folder(&f));

@@ -77,6 +77,13 @@ TEST(bad_insides_are_refused) {
       {"- {name: a, shape: sphere, radius: 0.08, material: calcite, clouds: [{radius: 0.05, size: "
        "[1, 1, 1]}]}\n",
        "a 'radius' or a 'size'"},
+      {"- {name: a, shape: sphere, radius: 0.08, material: calcite, clouds: [{radius: 0, medium: "
+       "{scattering: 7}}]}\n",
+       "the 'radius' of a cloud is above 0"},
+      {"- {name: a, shape: sphere, radius: 0.08, material: calcite, clouds: [{size: [0.01, 0, "
+       "0.01], "
+       "medium: {scattering: 7}}]}\n",
+       "the 'size' of a cloud is above 0"},
       {"- {name: a, shape: sphere, radius: 0.08, reflectance: 1, clouds: [{radius: 0.05}]}\n",
        "no 'material'"},
       {"- {name: a, shape: sphere, radius: 0.08, material: n-bk7, medium: {scattering: 7, "
