@@ -57,11 +57,11 @@ TEST(a_design_is_a_file_of_the_scene) {
       "printf '%s\\n' 'wait balanced' 'key control+s' 'assert note contains kept' 'say command' "
       "> a.txt");
   run_must("\"$abbe\" view in/cut.yaml " FEW
-           "--last balanced --size 420x64 --keep out/kept --script a.txt && grep -q \"file: "
+           "--last balanced --size 420x64 --keep out/kept --script a.txt && grep -q \"file: ."
            "$PWD/in/a.asc\" out/kept.yaml && \"$abbe\" plan out/kept.yaml >/dev/null");
   run_must(
       "\"$abbe\" view in/a.asc --material quartz --look velvet " FEW
-      "--last balanced --size 420x64 --keep out/stone --script a.txt > said && grep -q \"file: "
+      "--last balanced --size 420x64 --keep out/stone --script a.txt > said && grep -q \"file: ."
       "$PWD/in/a.asc\" out/stone.yaml && \"$abbe\" plan out/stone.yaml >/dev/null");
   run_must("grep -q '^command abbe render in/a.asc --material quartz --look velvet' said");
   /* no file can be written in a folder that is gone */
