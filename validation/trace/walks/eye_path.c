@@ -60,3 +60,13 @@ bool abbe_eye_turn(const abbe_eye_context *c, abbe_eye_path *p, float length,
   turned->id = p->id * 0x9e3779b1u + 0x27d4eb2fu;
   return true;
 }
+
+bool abbe_eye_chooses(const abbe_eye_context *c, abbe_eye_path *p, const abbe_eye_path *other) {
+  const float both = p->share + other->share;
+  float random[4];
+  abbe_eye_random4(c, p->id ^ 0x726f6f6du, p->steps, random);
+  const bool stays = random[0] * both < p->share;
+  if (!stays) *p = *other;
+  p->share = both;
+  return !stays;
+}

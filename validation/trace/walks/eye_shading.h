@@ -68,6 +68,11 @@ bool abbe_eye_trace(const abbe_eye_context *context, const abbe_eye_path *path, 
 bool abbe_eye_turn(const abbe_eye_context *context, abbe_eye_path *path, float length,
                    abbe_eye_path *turned);
 
+/* One of both goes on for both, by chance of their shares: true where that is the other, now in
+ * *path. */
+bool abbe_eye_chooses(const abbe_eye_context *context, abbe_eye_path *path,
+                      const abbe_eye_path *other);
+
 /* What ends a path goes into the sample: a receiver, a light, or nothing at all. straight: the
  * camera's own ray, whose caustic the photons bring. */
 void abbe_eye_arrive(const abbe_eye_context *context, const abbe_eye_path *path, bool met,

@@ -261,9 +261,13 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
   for (int k = 0; k < 4; k++) random[k] = abbe_random_float(bits[k]);
   if (abbe_haze_is(&c->w->media->haze)) {
     if (is_coloured_haze(c, p)) abbe_eye_disperse(p, bits[1]);
-    if (b->count < TURNS_ROOM && abbe_eye_turn(c, p, met ? length : INFINITY, &b->path[b->count]))
-      b->count++;
+    abbe_eye_path turned;
+    const bool turns = abbe_eye_turn(c, p, met ? length : INFINITY, &turned);
     abbe_eye_haze(c, p, met ? length : INFINITY, false);
+    if (turns && b->count < TURNS_ROOM)
+      b->path[b->count++] = turned;
+    else if (turns && abbe_eye_chooses(c, p, &turned))
+      return true;
   } else if (met) {
     absorb(c, p, length, bits[1]);
   }
