@@ -164,7 +164,7 @@ static abbe_result add_pencil(abbe_known_run *run, const char *material, double 
                             .exact = -expm1(-0.3),
                             .reason = "as improbable as four standard errors, taken from the "
                                       "spread of the passes; and 1e-6 for single precision",
-                            .samples = 1 << 20,
+                            .samples = 1 << 21,
                             .side = 8,
                             .channel = "turned"};
   snprintf(what, sizeof what, "of a beam through 10 mm of haze of 30/m in %s, scattered", material);
