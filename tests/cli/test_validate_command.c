@@ -54,7 +54,7 @@ TEST(a_group_as_json) {
  */
 TEST(runs_meet_a_furnace_and_converge) {
   run_says("\"$abbe\" validate --only furnace --samples 65536 --threads 1",
-           "5 of 5 known answers are within tolerance");
+           "10 of 10 known answers are within tolerance");
   run_says("\"$abbe\" validate --only convergence --samples 65536 --threads 1",
            "slope of the error over the photons");
 }
