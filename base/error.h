@@ -38,7 +38,7 @@ typedef enum abbe_result {
 } abbe_result;
 
 /* The last failure: its code and one sentence that names the file, line, key and value concerned
- * and says what would be right. text is one printable line of UTF-8 (encoding.h), whatever names
+ * and says what would be right. text is one printable line of UTF-8 (text.h), whatever names
  * and values it quotes; over-long sentences are cut. */
 typedef struct abbe_error {
   abbe_result code;

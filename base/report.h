@@ -46,7 +46,7 @@ typedef struct abbe_report {
 void abbe_report_free(abbe_report *report);
 
 /* Adds a note; report may be NULL, name NULL for none. Both become printable
- * (encoding.h). A note for which there is no memory is counted all the same. */
+ * (text.h). A note for which there is no memory is counted all the same. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 5, 6)))
 #endif

@@ -41,7 +41,7 @@ void abbe_glass_partners_free(abbe_glass_partners *partners);
 /* Which materials of a table are nearest to given numbers or to a given curve.
  *
  * Every distance is a difference of refractive index, root mean square over a range, so that those
- * of both ways can be compared. Not to be mistaken for nearest.h, which is about mistyped words. */
+ * of both ways can be compared. Mistyped words are abbe_nearest_word's. */
 
 typedef struct abbe_glass_distance {
   size_t index;       /* the material's index in its table */
