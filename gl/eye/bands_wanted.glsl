@@ -75,10 +75,11 @@ float wanted_bands(Hit front, vec3 d, int first, int last) {
   return turn * scene_size / (4.0 * front.t * pixel_angle) / 1.5;
 }
 
-// The first band of the next level, where each of `count` is two of this one's.
+// The first band of the next level, where each of `count` is two of this one's. Halved by a shift: of a signed division
+// here LLVM 21 overwrites a constant where it has AVX-512, and a frame never ends.
 void coarsen(bool coarser, inout int base, inout int count) {
   base += coarser ? count : 0;
-  count = coarser ? (count + 1) / 2 : count;
+  count = coarser ? (count + 1) >> 1 : count;
 }
 
 #ifdef REFINED
@@ -125,7 +126,7 @@ void choose_bands(out int base, out int count) {
   wanted = max(wanted, 3.0);  // twenty-four parts have the colour of two stones
 #endif
   for (int k = 0; k < counts.band_levels - 1; k++) {
-    bool coarser = float((count + 1) / 2) >= wanted;
+    bool coarser = float((count + 1) >> 1) >= wanted;
     coarsen(coarser, base, count);
 #ifdef REFINES
     level += coarser ? 1 : 0;

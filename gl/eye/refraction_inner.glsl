@@ -90,7 +90,6 @@ vec3 through(Hit front, vec3 d) {
 #ifdef ABSORBING
       path_m += distance(h.p, ray.p);
       limit *= shown != vec3(0) ? exp(least_per_m * distance(h.p, ray.p)) : 1.0;
-      limit = min(limit, 2.0);  // more than any share; with an infinite one Mesa 26.1's llvmpipe goes round for ever
 #endif
 #ifdef KEEPS_SPREAD
       outside = spread_outside(h, ray.p, ray.d, n, within);
