@@ -20,6 +20,12 @@ static size_t eye_exits(const abbe_plan *plan) {
   return most < ABBE_PLAN_EYE_EXITS ? most : ABBE_PLAN_EYE_EXITS;
 }
 
+/* Whether light is followed through one convex faceted solid alone, whichever model has it. */
+static bool is_lone_solid(const abbe_scene *scene, const abbe_plan *plan) {
+  return plan->facets && (plan->convex || plan->bvh) && plan->refractor_count == 1 &&
+         !plan->mirror[0] && scene->object[plan->refractor_object[0]].material != NULL;
+}
+
 void abbe_path_limits_choose(const abbe_scene *scene, const abbe_render_desc *asked,
                              abbe_plan *plan) {
   const bool thesis = abbe_method_of(plan->desc.profile)->own_passes;
@@ -27,8 +33,7 @@ void abbe_path_limits_choose(const abbe_scene *scene, const abbe_render_desc *as
   /* What a view's layers do not show is missed more with every reflection: fewer are worth it. */
   if (thesis || plan->desc.exits == 0)
     plan->desc.exits = thesis ? 1 : plan->layers ? ABBE_PLAN_LAYER_EXITS : ABBE_PLAN_EXITS;
-  if (plan->convex && plan->refractor_count == 1 && !plan->multi_refractor_paths &&
-      abbe_plan_no_refraction(plan) == NULL)
+  if (is_lone_solid(scene, plan) && abbe_plan_no_refraction(plan) == NULL)
     abbe_number_format(inside, sizeof inside, "; %.2g %% of it is still inside then",
                        100 * abbe_inner_light_plan(scene, asked, plan));
   /* Layers show less and less of what is inside; and a request for few exits shows them. A smaller

@@ -154,6 +154,11 @@ TEST(a_gem_takes_as_many_exits_as_carry_light) {
   assert_true(planned(&scene, &own, &asked) > 0.1);
   assert_int_equal(asked.desc.exits, 3);
   assert_near(asked.desc.energy_share, 0.2, 0);
+  /* Triangle by triangle it takes as many: the light is the same. */
+  const abbe_render_desc by_triangles = {.model = ABBE_MODEL_BVH};
+  MADE(abbe_plan, triangles, abbe_plan_make(&scene, &by_triangles, &triangles, &error));
+  assert_int_equal(triangles.desc.exits, plan.desc.exits);
+  assert_near(triangles.desc.energy_share, plan.desc.energy_share, 0);
 }
 
 /* An earlier plan's light is that of the same stone and lamps, and of no others. */
