@@ -84,16 +84,6 @@ typedef struct abbe_volume_sight {
 void abbe_caustic_volume_look(const abbe_caustic_volume *volume, abbe_volume_lookup lookup,
                               const double to_light[3], abbe_volume_sight *out);
 
-/* Vector irradiance at p of light of unit irradiance: f[0] of X, f[1] of Y, f[2] of Z, interpolated
- * between cells; beyond the region that of its rim towards p, thinned by the square of the
- * distance. ABBE_VOLUME_VECTOR alone. */
-void abbe_caustic_volume_flux(const abbe_caustic_volume *volume, const abbe_volume_sight *sight,
-                              const double p[3], double f[3][3]);
-/* R, G and B of a printed volume's nearest cell, beyond the region that of its rim; before the
- * cosine between the receiver's normal and -p. */
-void abbe_caustic_volume_ratio(const abbe_caustic_volume *volume, const abbe_volume_sight *sight,
-                               const double p[3], double rgb[3]);
-
 /* Caustic volumes as OpenEXR files: one part, half precision, ZIP, written beside their target and
  * renamed; what they are stands in named attributes.
  *

@@ -45,11 +45,7 @@ abbe_result abbe_volume_region_make(const abbe_region_desc *desc, abbe_volume_re
                                     abbe_error *error);
 void abbe_volume_region_free(abbe_volume_region *region);
 
-/* The cell of a place; false outside the region, and within its first shell. */
-bool abbe_volume_region_find(const abbe_volume_region *region, const double p[3], size_t *cell);
-/* The same by the table of directions, which near an edge of triangles may have the one beside. */
-bool abbe_volume_region_look_up(const abbe_volume_region *region, const double p[3], size_t *cell);
-/* Its middle: of a shell's at the middle radius. */
+/* The middle of a cell: of a shell's at the middle radius. */
 void abbe_volume_region_middle(const abbe_volume_region *region, size_t cell, double p[3]);
 double abbe_volume_region_volume(const abbe_volume_region *region, size_t cell); /* m3 */
 /* The area that a beam along the unit direction d meets of a cell, m2; faces of shells are taken as
@@ -69,11 +65,5 @@ typedef struct abbe_region_piece {
  * many. */
 size_t abbe_volume_region_walk(const abbe_volume_region *region, const double o[3],
                                const double d[3], double limit, abbe_region_piece *piece);
-
-/* The cells that a place lies between and their weights, which sum to 1: on a grid and of an
- * octahedral map eight by linear interpolation, of triangles two shells' one; clamped to the
- * region's own. Returns how many. */
-size_t abbe_volume_region_between(const abbe_volume_region *region, const double p[3],
-                                  size_t cell[8], double weight[8]);
 
 #endif

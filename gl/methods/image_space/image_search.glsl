@@ -1,4 +1,4 @@
-// Where a ray meets receivers, by what a view sees of them: the float version of scenes/view/estimator.c.
+// Where a ray meets receivers, by what a view sees of them: the ways of scenes/view/estimator.h.
 // ESTIMATOR, one of ESTIMATOR_SHAH and so on, ITERATIONS, and SEARCH_AS_PRINTED: starts and steps in metres.
 // Who includes this gives
 // look_up(at, seen), places_view(), places_axis(at) and, for the exact one, receiver_hit().

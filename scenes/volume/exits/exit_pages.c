@@ -149,10 +149,6 @@ static void fit_windows(const landing *all, const catching c[PARTS]) {
 
 /* ---- texels ---- */
 
-static float *texel(const abbe_exit_pages *p, size_t page, size_t fine, size_t x, size_t y) {
-  return p->value[((2 * page + fine) * p->side + y) * p->side + x];
-}
-
 /* The map of a tile, or its finer map: one of the part's own. */
 static float (*map_of(catching *c, size_t page, size_t fine))[4] {
   const size_t side = c->all->pages->side;
@@ -369,27 +365,4 @@ void abbe_exit_pages_halve(const float (*from)[4], size_t side, float (*to)[4]) 
       for (int k = 0; k < 4; k++)
         (*to)[k] = 0.25f * (at[0][k] + at[1][k] + at[side][k] + at[side + 1][k]);
     }
-}
-
-void abbe_exit_pages_at(const abbe_exit_pages *p, size_t page, double u, double v, double xyz[3]) {
-  const float *w = p->window[page];
-  const double at[2] = {(u - (double)w[0]) * (double)w[2], (v - (double)w[1]) * (double)w[3]};
-  const bool fine = at[0] >= 0 && at[0] <= 1 && at[1] >= 0 && at[1] <= 1 && w[2] > 0;
-  const double most = (double)p->side - 1, place[2] = {fine ? at[0] : u, fine ? at[1] : v};
-  size_t low[2], high[2];
-  double part[2];
-  for (int a = 0; a < 2; a++) {
-    const double x = fmin(fmax(place[a] * (double)p->side - 0.5, 0), most);
-    low[a] = (size_t)x;
-    high[a] = low[a] + 1 < p->side ? low[a] + 1 : low[a];
-    part[a] = x - (double)low[a];
-  }
-  for (int k = 0; k < 3; k++) {
-    const double a = (double)texel(p, page, fine, low[0], low[1])[k],
-                 b = (double)texel(p, page, fine, high[0], low[1])[k],
-                 c = (double)texel(p, page, fine, low[0], high[1])[k],
-                 d = (double)texel(p, page, fine, high[0], high[1])[k];
-    const double near_v = a + part[0] * (b - a), far_v = c + part[0] * (d - c);
-    xyz[k] = near_v + part[1] * (far_v - near_v);
-  }
 }

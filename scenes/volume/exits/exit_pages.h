@@ -37,10 +37,6 @@ void abbe_exit_pages_free(abbe_exit_pages *pages);
  * `from`. */
 void abbe_exit_pages_halve(const float (*from)[4], size_t side, float (*to)[4]);
 
-/* XYZ at a place of a tile, u and v of 0 to 1, between its texels, as the renderer has it. */
-void abbe_exit_pages_at(const abbe_exit_pages *pages, size_t page, double u, double v,
-                        double xyz[3]);
-
 /* A map that light is laid on at places, and what it is of tents of one width in place of places.
  * Of light it knows four channels. */
 

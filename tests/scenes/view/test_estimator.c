@@ -2,8 +2,7 @@
  * surfaces whose lookup is a formula; what they do where nothing is seen. */
 #include "tests/check.h"
 
-#include "base/maths.h"
-#include "scenes/view/estimator.h"
+#include "tests/scenes/view/estimator_run.h"
 
 #include <float.h>
 

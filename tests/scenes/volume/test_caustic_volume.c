@@ -5,6 +5,7 @@
 #include "base/maths.h"
 #include "scenes/volume/caustic_volume.h"
 #include "tests/random.h"
+#include "tests/scenes/volume/volume_lookup.h"
 #include "tests/scenes/volume/volumes.h"
 
 static const abbe_region_desc

@@ -8,6 +8,7 @@
 #include "scenes/volume/exits/exit_pages.h"
 #include "scenes/volume/half.h"
 #include "tests/scenes/scene_text.h"
+#include "tests/scenes/volume/volume_lookup.h"
 
 #define PLATE                                                                                      \
   CAMERA SUN FLOOR                                                                                 \

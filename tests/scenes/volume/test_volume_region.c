@@ -2,6 +2,7 @@
  * must be. */
 #include "tests/check.h"
 #include "tests/random.h"
+#include "tests/scenes/volume/volume_lookup.h"
 
 #include "base/maths.h"
 #include "scenes/volume/volume_region.h"

@@ -1,9 +1,8 @@
-/* image_search.glsl against scenes/view/estimator.c: every estimator, after one iteration and more,
+/* image_search.glsl against estimator_run.h: every estimator, after one iteration and more,
  * on planes and in a sphere, for point and directional lights. */
 #include "tests/gl/glsl.h"
 
-#include "base/maths.h"
-#include "scenes/view/estimator.h"
+#include "tests/scenes/view/estimator_run.h"
 
 enum { CASES = 64 };
 

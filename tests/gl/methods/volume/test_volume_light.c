@@ -1,6 +1,7 @@
 /* Caustics looked up in volumes: every pixel of a floor has what the processor finds there, however
  * the object and the light are moved; what a volume does not hold is refused. */
 #include "tests/gl/frame.h"
+#include "tests/scenes/volume/volume_lookup.h"
 
 #include "base/maths.h"
 #include "colorimetry/rgb_space.h"

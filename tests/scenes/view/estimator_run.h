@@ -1,9 +1,47 @@
-#include "scenes/view/estimator.h"
+/* estimator_run.h: image_search.glsl in doubles, for any lookup, a texture or a formula: where a
+ * ray meets receivers, by what a view sees of them. It knows no scene. Lengths in metres. */
+#ifndef ABBE_TESTS_SCENES_VIEW_ESTIMATOR_RUN_H
+#define ABBE_TESTS_SCENES_VIEW_ESTIMATOR_RUN_H
 
 #include "base/maths.h"
+#include "scenes/view/estimator.h"
+#include "scenes/view/view.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
+
+/* As printed: the first place of shah and axis and the step of newton. */
+#define ABBE_ESTIMATOR_START_M 1.0
+#define ABBE_ESTIMATOR_STEP_M 0.1
+/* So far behind its origin a ray may land, of the view's far end: what it leaves may stand on the
+ * receiver. */
+#define ABBE_ESTIMATOR_BEHIND 1e-3
+/* Else, of |p(0) - origin|. */
+#define ABBE_ESTIMATOR_STEP_SHARE 0.015625
+#define ABBE_ESTIMATOR_DOUBLINGS 8
+
+/* The place on a receiver that the light sees in the direction of `at`; false where it sees none.
+ */
+typedef bool (*abbe_estimator_lookup)(void *user, const double at[3], double seen[3]);
+
+typedef struct abbe_estimator_desc {
+  abbe_estimator kind; /* not AUTO, not EXACT */
+  size_t iterations;   /* 1 to ABBE_ESTIMATOR_MAX_ITERATIONS; steps of a march */
+  bool printed;        /* starts, steps and f as printed; else by |p(0) - origin| */
+  double step;         /* newton's h, not printed: m; 0: a share of |p(0) - origin| */
+  double range;        /* length of a march, m; 0: four times |p(0) - origin| */
+  const abbe_view *view;
+  abbe_estimator_lookup lookup;
+  void *user;
+} abbe_estimator_desc;
+
+typedef struct abbe_estimate {
+  bool found;      /* false: a lookup that it could not do without saw nothing */
+  double distance; /* along the ray, m */
+  double at[3];    /* m; of shah and axis on a receiver, of the others on the ray */
+  size_t lookups;
+} abbe_estimate;
 
 typedef struct search {
   const abbe_estimator_desc *desc;
@@ -18,13 +56,13 @@ typedef struct place {
   double d, g;
 } place;
 
-static void along(const search *s, double d, double out[3]) {
+static void place_along(const search *s, double d, double out[3]) {
   for (int k = 0; k < 3; k++) out[k] = s->origin[k] + d * s->direction[k];
 }
 
-static bool look(search *s, double d) {
+static bool look_from(search *s, double d) {
   double at[3];
-  along(s, d, at);
+  place_along(s, d, at);
   s->lookups++;
   s->found = s->desc->lookup(s->desc->user, at, s->seen);
   return s->found;
@@ -40,8 +78,8 @@ static double distance(const double a[3], const double b[3]) {
 static double behind(search *s, double d, bool ratio) {
   const abbe_view *view = s->desc->view;
   double at[3], between[3];
-  along(s, d, at);
-  if (!look(s, d)) return NAN;
+  place_along(s, d, at);
+  if (!look_from(s, d)) return NAN;
   if (view->orthographic) {
     abbe_vector_subtract(at, s->seen, between);
     return abbe_vector_dot(between, view->forward);
@@ -52,19 +90,19 @@ static double behind(search *s, double d, bool ratio) {
 
 static double start_of(search *s) {
   if (s->desc->printed) return ABBE_ESTIMATOR_START_M;
-  look(s, 0);
+  look_from(s, 0);
   return distance(s->seen, s->origin);
 }
 
 static double fixed_point(search *s, bool axis) {
   const double *a = s->desc->view->forward, along_axis = abbe_vector_dot(s->direction, a);
   double d = start_of(s);
-  for (size_t i = 0; i < s->desc->iterations && look(s, d); i++) {
+  for (size_t i = 0; i < s->desc->iterations && look_from(s, d); i++) {
     double between[3];
     abbe_vector_subtract(s->seen, s->origin, between);
     d = axis ? abbe_vector_dot(between, a) / along_axis : abbe_vector_length(between);
   }
-  look(s, d);
+  look_from(s, d);
   return d;
 }
 
@@ -164,7 +202,7 @@ static double secant(search *s) {
 static double march(search *s) {
   double range = s->desc->range;
   if (range <= 0) {
-    if (!look(s, 0)) return 0;
+    if (!look_from(s, 0)) return 0;
     range = 4 * distance(s->seen, s->origin);
   }
   const double step = range / (double)s->desc->iterations;
@@ -183,7 +221,7 @@ static double far_seen(search *s) {
   s->found = !view->orthographic && abbe_vector_dot(s->direction, view->forward) > 0 &&
              s->desc->lookup(s->desc->user, at, s->seen);
   if (s->found) return distance(s->seen, view->origin);
-  return look(s, 0) ? distance(s->seen, s->origin) : 0;
+  return look_from(s, 0) ? distance(s->seen, s->origin) : 0;
 }
 
 static double impostor(search *s) {
@@ -204,8 +242,9 @@ static double impostor(search *s) {
   return d;
 }
 
-abbe_estimate abbe_estimator_run(const abbe_estimator_desc *desc, const double origin[3],
-                                 const double direction[3]) {
+/* Direction is unit. */
+static inline abbe_estimate abbe_estimator_run(const abbe_estimator_desc *desc,
+                                               const double origin[3], const double direction[3]) {
   search s = {.desc = desc, .origin = origin, .direction = direction, .found = true};
   abbe_estimate out = {0};
   switch (desc->kind) {
@@ -235,20 +274,18 @@ abbe_estimate abbe_estimator_run(const abbe_estimator_desc *desc, const double o
   if (desc->kind == ABBE_ESTIMATOR_SHAH || desc->kind == ABBE_ESTIMATOR_AXIS)
     memcpy(out.at, s.seen, sizeof out.at);
   else
-    along(&s, out.distance, out.at);
+    place_along(&s, out.distance, out.at);
   return out;
 }
 
-double abbe_estimator_rate(bool axis, const double r[3], const double s[3], const double n[3],
-                           const double a[3]) {
+/* What an iteration of shah (axis false) or axis makes of a small error, where the light comes
+ * along `light` onto a surface of that normal, all unit: 1 - (r.s)(n.r)/(n.s), or with a for the
+ * view's axis 1 - (n.r)(a.s)/((n.s)(a.r)). It converges where this is below 1 in size. */
+static inline double abbe_estimator_rate(bool axis, const double r[3], const double s[3],
+                                         const double n[3], const double a[3]) {
   const double nr = abbe_vector_dot(n, r), ns = abbe_vector_dot(n, s);
   if (!axis) return 1 - abbe_vector_dot(r, s) * nr / ns;
   return 1 - nr * abbe_vector_dot(a, s) / (ns * abbe_vector_dot(a, r));
 }
 
-const char *abbe_estimator_name(abbe_estimator estimator) {
-#define ABBE_NAME_OF(code, name) name,
-  static const char *const names[] = {ABBE_ESTIMATORS(ABBE_NAME_OF)};
-#undef ABBE_NAME_OF
-  return (int)estimator >= 0 && estimator < ABBE_ESTIMATOR_COUNT ? names[estimator] : "unknown";
-}
+#endif
