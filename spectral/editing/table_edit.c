@@ -14,7 +14,7 @@
 #include <strings.h>
 #include <unistd.h>
 
-enum { MAX_BYTES = 16 << 20, MAX_LISTED = 64 };
+enum { MAX_BYTES = 16 << 20 };
 
 struct abbe_table_edit {
   abbe_yaml_edit yaml;
@@ -150,48 +150,6 @@ abbe_result abbe_table_edit_set_text(abbe_table_edit *edit, const char *name, co
   return result;
 }
 
-abbe_result abbe_table_edit_set_number(abbe_table_edit *edit, const char *name, const char *key,
-                                       double value, abbe_error *error) {
-  char text[ABBE_NUMBER_TEXT_SIZE];
-  return abbe_table_edit_set(edit, name, key, abbe_number_text(value, text), error);
-}
-
-/* Where the old list is as long as the new one: the numbers that differ, each in its place. */
-static abbe_result set_each(abbe_table_edit *edit, const char *name, const char *key,
-                            const double *value, size_t count, abbe_error *error) {
-  for (size_t i = 0; i < count; i++) {
-    char path[160];
-    abbe_table_place p;
-    snprintf(path, sizeof path, "%.120s.%zu", key, i);
-    ABBE_TRY(abbe_table_place_key(&edit->yaml, name, path, &p, error));
-    double old = 0;
-    abbe_yaml_node item = abbe_yaml_item(edit->yaml.yaml, p.parent, p.index);
-    if (abbe_yaml_number(edit->yaml.yaml, item, key, -1e308, 1e308, &old, NULL) == ABBE_OK &&
-        old == value[i])
-      continue;
-    ABBE_TRY(abbe_table_edit_set_number(edit, name, path, value[i], error));
-  }
-  return ABBE_OK;
-}
-
-abbe_result abbe_table_edit_set_numbers(abbe_table_edit *edit, const char *name, const char *key,
-                                        const double *value, size_t count, abbe_error *error) {
-  abbe_table_place p;
-  ABBE_TRY(abbe_table_place_key(&edit->yaml, name, key, &p, error));
-  abbe_yaml_node old = {0};
-  if (p.found && abbe_yaml_is_mapping(edit->yaml.yaml, p.parent))
-    old = abbe_yaml_value(edit->yaml.yaml, p.parent, p.index);
-  if (abbe_yaml_is_sequence(edit->yaml.yaml, old) && count <= MAX_LISTED &&
-      abbe_yaml_count(edit->yaml.yaml, old) == count &&
-      set_each(edit, name, key, value, count, NULL) == ABBE_OK)
-    return ABBE_OK;
-  char *list = NULL;
-  abbe_result result = abbe_yaml_edit_list(value, count, &list, error);
-  if (result == ABBE_OK) result = abbe_table_edit_set(edit, name, key, list, error);
-  free(list);
-  return result;
-}
-
 abbe_result abbe_table_edit_unset(abbe_table_edit *edit, const char *name, const char *key,
                                   abbe_error *error) {
   abbe_table_place p;
@@ -237,46 +195,6 @@ abbe_result abbe_table_edit_record(abbe_table_edit *edit, const char *name, char
   abbe_yaml_node record;
   ABBE_TRY(abbe_table_place_record(&edit->yaml, name, &index, &record, error));
   return abbe_yaml_edit_item(&edit->yaml, abbe_table_place_records(&edit->yaml), index, out, error);
-}
-
-abbe_result abbe_table_edit_get(const abbe_table_edit *edit, const char *name, const char *key,
-                                char **out, abbe_error *error) {
-  *out = NULL;
-  abbe_table_place p;
-  abbe_error why = {0};
-  abbe_result result = abbe_table_place_key(&edit->yaml, name, key, &p, &why);
-  size_t item;
-  abbe_yaml_node record;
-  if (result == ABBE_NOT_FOUND &&
-      abbe_table_place_record(&edit->yaml, name, &item, &record, NULL) == ABBE_OK)
-    return ABBE_OK; /* the key leads nowhere */
-  if (result != ABBE_OK) return abbe_error_set(error, result, "%s", why.text);
-  if (!p.found) return ABBE_OK;
-  const abbe_yaml *yaml = edit->yaml.yaml;
-  abbe_yaml_node value = abbe_yaml_is_mapping(yaml, p.parent)
-                             ? abbe_yaml_value(yaml, p.parent, p.index)
-                             : abbe_yaml_item(yaml, p.parent, p.index);
-  const char *text = abbe_yaml_text(yaml, value);
-  size_t from, to;
-  abbe_yaml_span(yaml, value, &from, &to);
-  *out = text != NULL ? strdup(text) : strndup(edit->yaml.text + from, to - from);
-  return *out != NULL ? ABBE_OK : no_memory(error, edit->yaml.name);
-}
-
-char *abbe_table_edit_first_name(const abbe_table_edit *edit) {
-  abbe_yaml_node record = abbe_yaml_item(edit->yaml.yaml, abbe_table_place_records(&edit->yaml), 0);
-  return record.id != 0 ? strdup(abbe_table_place_name(edit->yaml.yaml, record)) : NULL;
-}
-
-abbe_result abbe_table_edit_revert(abbe_table_edit *edit, abbe_error *error) {
-  static const char empty[] = "materials:\n";
-  abbe_yaml_edit before;
-  const char *text = edit->is_new ? empty : edit->before;
-  size_t size = edit->is_new ? strlen(empty) : edit->before_size;
-  ABBE_TRY(abbe_yaml_edit_make(text, size, edit->yaml.name, &before, error));
-  abbe_yaml_edit_free(&edit->yaml);
-  edit->yaml = before;
-  return ABBE_OK;
 }
 
 /* ---- what becomes of them ---- */

@@ -46,12 +46,6 @@ abbe_result abbe_table_edit_set(abbe_table_edit *edit, const char *name, const c
 /* The same for a text, put in quotes where it must be. */
 abbe_result abbe_table_edit_set_text(abbe_table_edit *edit, const char *name, const char *key,
                                      const char *text, abbe_error *error);
-/* The same for one number, and for a list: of a list as long as the new one, only the numbers that
- * differ change their bytes. */
-abbe_result abbe_table_edit_set_number(abbe_table_edit *edit, const char *name, const char *key,
-                                       double value, abbe_error *error);
-abbe_result abbe_table_edit_set_numbers(abbe_table_edit *edit, const char *name, const char *key,
-                                        const double *value, size_t count, abbe_error *error);
 /* Takes key and its value out. */
 abbe_result abbe_table_edit_unset(abbe_table_edit *edit, const char *name, const char *key,
                                   abbe_error *error);
@@ -65,17 +59,6 @@ abbe_result abbe_table_edit_rename(abbe_table_edit *edit, const char *name, cons
 /* The record's own text, with the comments inside it, at the left margin; malloc'd. */
 abbe_result abbe_table_edit_record(abbe_table_edit *edit, const char *name, char **out,
                                    abbe_error *error);
-
-/* The value of key: a scalar's text without its quotes, brackets and blocks as they stand; *out is
- * malloc'd, NULL where the record has no such key. */
-abbe_result abbe_table_edit_get(const abbe_table_edit *edit, const char *name, const char *key,
-                                char **out, abbe_error *error);
-
-/* The name of the table's first record as it is written, malloc'd; NULL where there is none. */
-char *abbe_table_edit_first_name(const abbe_table_edit *edit);
-
-/* Takes all changes back: the text is as it was read or last saved. */
-abbe_result abbe_table_edit_revert(abbe_table_edit *edit, abbe_error *error);
 
 /* ABBE_OK where the changed text is a table, else abbe_material_table_parse's error about it. */
 abbe_result abbe_table_edit_check(const abbe_table_edit *edit, abbe_error *error);

@@ -163,8 +163,7 @@ static abbe_result edit_table(abbe_error *error) {
   if (result == ABBE_OK) result = abbe_table_edit_open(path, &edit, error);
   if (result == ABBE_OK) result = abbe_table_edit_set_text(edit, "b", "source", "new: it", error);
   if (result == ABBE_OK)
-    result =
-        abbe_table_edit_set_numbers(edit, "a", "coefficients", (double[]){1.6, 0.01}, 2, error);
+    result = abbe_table_edit_set(edit, "a", "coefficients", "[1.6, 0.01]", error);
   if (result == ABBE_OK) result = abbe_table_edit_rename(edit, "b", "d", error);
   if (result == ABBE_OK) result = abbe_table_edit_remove(edit, "c", error);
   if (result == ABBE_OK) result = abbe_table_edit_add(edit, C, error);
