@@ -37,13 +37,12 @@ foreach(name
     photon_grid
     projection_map
     random
-    rank_files ranked_optimum ranked_run
+    ranked_run
     reflectance
     route
     scatter
     inner_walk
     spectral_sampling
-    reference
     relit_trace
     sphere_quadrature
     trace_run

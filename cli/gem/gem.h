@@ -8,7 +8,6 @@
 #define ABBE_CLI_GEM_GEM_H
 
 #include "base/report.h"
-#include "cli/base/rank_job.h"
 #include "cli/gem/gem_input.h"
 #include "colorimetry/image/image.h"
 #include "scenes/cuts/cut.h"
@@ -25,10 +24,6 @@
   X(report, "judge the cut in a stone: brightness, leakage, fire, by tilt, with errors")           \
   X(optimise, "the crown and pavilion angles that do best in a stone, meets kept")                 \
   X(convert, "a design as .asc, .gem or .gcs, or as a solid: STL, OBJ, glTF")
-
-/* The pairs of one search by several processes (validation/lab/ranked_optimum.h); rank 0
- * writes and says what came of it. Gives the exit code. */
-int abbe_gem_optimise_by_ranks(int argc, char **argv, abbe_rank_job *job);
 
 /* To path, .png or .svg: the measure over both angles. */
 abbe_result abbe_gem_optimise_plot(const char *path, const abbe_gem_input *input,

@@ -23,22 +23,15 @@ static const struct argp_option options[] = {{"output", 'o', "FILE", ABBE_ARGUME
                                               "where to: .asc, .gem, .gcs, .stl, .obj or .glb", 0},
                                              {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_CHILD(request, 0, in),
+    ABBE_TAKE_TEXT(request, 'o', output),
+    ABBE_TAKE_NEEDED(request, output, "where to? Give -o FILE.asc, .gem, .gcs, .stl, .obj or .glb"),
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
-  request *q = state->input;
-  switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &q->in;
-    return 0;
-  case 'o':
-    q->output = text;
-    return 0;
-  case ARGP_KEY_END:
-    if (q->output == NULL)
-      argp_error(state, "where to? Give -o FILE.asc, .gem, .gcs, .stl, .obj or .glb");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
+  return abbe_take_option(takes, key, text, state) ? 0 : ARGP_ERR_UNKNOWN;
 }
 
 static abbe_result print_json(const request *q, const abbe_report *report, abbe_error *error) {
@@ -95,21 +88,15 @@ typedef struct gem_diagram_request {
 static const struct argp_option gem_diagram_options[] = {
     {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "the sheet: .pdf, .svg or .png", 0}, {0}};
 
+static const abbe_take gem_diagram_takes[] = {
+    ABBE_TAKE_CHILD(gem_diagram_request, 0, in),
+    ABBE_TAKE_TEXT(gem_diagram_request, 'o', output),
+    ABBE_TAKE_NEEDED(gem_diagram_request, output, "where to? Give -o FILE.pdf, .svg or .png"),
+    {0},
+};
+
 static error_t gem_diagram_parse(int key, char *text, struct argp_state *state) {
-  gem_diagram_request *q = state->input;
-  switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &q->in;
-    return 0;
-  case 'o':
-    q->output = text;
-    return 0;
-  case ARGP_KEY_END:
-    if (q->output == NULL) argp_error(state, "where to? Give -o FILE.pdf, .svg or .png");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
+  return abbe_take_option(gem_diagram_takes, key, text, state) ? 0 : ARGP_ERR_UNKNOWN;
 }
 
 /* The stone's note, where one is wanted. */
@@ -333,16 +320,13 @@ static void read_rough(abbe_gem_input *in, const char *text) {
 
 static error_t gem_info_parse(int key, char *text, struct argp_state *state) {
   abbe_gem_input *in = state->input;
-  switch (key) {
-  case ARGP_KEY_INIT:
+  if (key == ARGP_KEY_INIT)
     state->child_inputs[0] = in;
-    return 0;
-  case OPTION_ROUGH:
+  else if (key == OPTION_ROUGH)
     read_rough(in, text);
-    return 0;
-  default:
+  else
     return ARGP_ERR_UNKNOWN;
-  }
+  return 0;
 }
 
 int abbe_gem_info(int argc, char **argv) {

@@ -108,41 +108,26 @@ static const struct argp_option options[] = {
     {"quiet", 'q', NULL, 0, "no notes", 0},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(abbe_gem_input, OPTION_MATERIAL, material_name),
+    ABBE_TAKE_TEXT(abbe_gem_input, OPTION_TABLE, table_path),
+    ABBE_TAKE_LENGTH(abbe_gem_input, OPTION_WIDTH, width_m, 1e-6, 1e3),
+    ABBE_TAKE_NUMBER(abbe_gem_input, OPTION_DENSITY, density_g_cm3, 0.1, 50),
+    ABBE_TAKE_NUMBER(abbe_gem_input, OPTION_WELD, weld, 1e-12, ABBE_CUT_MOST_WELD),
+    ABBE_TAKE_FLAG(abbe_gem_input, OPTION_JSON, json),
+    ABBE_TAKE_FLAG(abbe_gem_input, 'q', quiet),
+    ABBE_TAKE_NEEDED(abbe_gem_input, path,
+                     "which design? Give a file such as scenes/designs/brilliant-quartz.asc"),
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   abbe_gem_input *in = state->input;
-  switch (key) {
-  case OPTION_MATERIAL:
-    in->material_name = text;
-    return 0;
-  case OPTION_TABLE:
-    in->table_path = text;
-    return 0;
-  case OPTION_WIDTH:
-    in->width_m = abbe_command_length(in->program, "--width", text, 1e-6, 1e3);
-    return 0;
-  case OPTION_DENSITY:
-    in->density_g_cm3 = abbe_command_number(in->program, "--density", text, 0.1, 50);
-    return 0;
-  case OPTION_WELD:
-    in->weld = abbe_command_number(in->program, "--weld", text, 1e-12, ABBE_CUT_MOST_WELD);
-    return 0;
-  case OPTION_JSON:
-    in->json = true;
-    return 0;
-  case 'q':
-    in->quiet = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (in->path != NULL) argp_error(state, "one design at a time: '%s' and '%s'", in->path, text);
-    in->path = text;
-    return 0;
-  case ARGP_KEY_END:
-    if (in->path == NULL)
-      argp_error(state, "which design? Give a file such as scenes/designs/brilliant-quartz.asc");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
+  if (abbe_take_option(takes, key, text, state)) return 0;
+  if (key != ARGP_KEY_ARG) return ARGP_ERR_UNKNOWN;
+  if (in->path != NULL) argp_error(state, "one design at a time: '%s' and '%s'", in->path, text);
+  in->path = text;
+  return 0;
 }
 
 const struct argp abbe_gem_input_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};

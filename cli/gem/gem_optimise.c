@@ -3,12 +3,10 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
-#include "cli/base/rank_job.h"
 #include "cli/gem/gem.h"
 #include "cli/gem/gem_input.h"
 
 #include "scenes/cuts/cut_stretch.h"
-#include "validation/lab/ranked_optimum.h"
 #include "validation/measure/gem/gem_grid_file.h"
 #include "validation/measure/gem/gem_optimum.h"
 
@@ -61,7 +59,6 @@ typedef struct request {
   double crown[2], pavilion[2], head_deg, tilt_deg, azimuth_deg;
   size_t crowns, pavilions, tilts, azimuths, size, threads; /* tilts 0: no search for axes */
   int measure;
-  const abbe_rank_job *job; /* the ranks that share the pairs; NULL: one process */
 } request;
 
 static const struct argp_option options[] = {
@@ -118,60 +115,13 @@ static void read_tilt(request *q, const char *text) {
   exit(ABBE_EXIT_USAGE);
 }
 
-static error_t parse_more(int key, char *arg, request *q) {
-  switch (key) {
-  case KEY_HEAD:
-    q->head_deg = abbe_command_number(q->stone.in.program, "--head-shadow", arg, 0, 44.999);
-    return 0;
-  case KEY_TILT:
-    read_tilt(q, arg);
-    return 0;
-  case KEY_AXIS:
-    if (strchr(arg, 'x') == NULL)
-      q->stone.axis = arg;
-    else
-      abbe_command_size(q->stone.in.program, "--axis", arg, ABBE_GEM_MOST_ANGLES, &q->tilts,
-                        &q->azimuths);
-    return 0;
-  case KEY_RANGE:
-    abbe_command_range(q->stone.in.program, "--range", arg, &q->stone.from_nm, &q->stone.to_nm);
-    return 0;
-  case KEY_SIZE:
-    q->size = abbe_command_count(q->stone.in.program, "--size", arg, 8, ABBE_GEM_MOST_SIDE);
-    return 0;
-  case KEY_THREADS:
-    q->threads = abbe_command_count(q->stone.in.program, "--threads", arg, 1, 1024);
-    return 0;
-  case KEY_PART:
-    abbe_command_read_part(q->stone.in.program, arg, &q->part);
-    return 0;
-  case KEY_PAIRS:
-    q->pairs = abbe_command_target(q->stone.in.program, "--pairs", arg, ".csv");
-    return 0;
-  case KEY_MERGE:
-    q->merge = true;
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
-
-/* The file beside which ranks keep theirs, or NULL. */
-static const char *kept_beside(const request *q) {
-  return q->pairs != NULL ? q->pairs : q->out != NULL ? q->out : q->plot;
-}
-
 /* That the parts' options go together, and which pieces of work there are. */
 static void check_parts(const request *q, struct argp_state *state) {
-  if (q->tilts > 0 && (q->job != NULL || q->merge || q->part.parts > 0 || q->pairs != NULL ||
-                       q->out != NULL || q->plot != NULL))
+  if (q->tilts > 0 &&
+      (q->merge || q->part.parts > 0 || q->pairs != NULL || q->out != NULL || q->plot != NULL))
     argp_error(state, "--axis with so many ways keeps the angles: --part, --merge, --pairs, "
                       "--plot and -o are for angles");
   if (q->tables > 0 && !q->merge) argp_error(state, "one design; '%s' is too much", q->table[0]);
-  if (q->job != NULL && (q->merge || q->part.parts > 0))
-    argp_error(state, "--part and --merge are for one process: abbe gem optimise");
-  if (q->job != NULL && kept_beside(q) == NULL)
-    argp_error(state, "ranks keep their pairs in files: give --pairs FILE.csv, -o or --plot");
   if (q->merge && q->tables == 0)
     argp_error(state, "--merge: of which tables? They follow the design");
   if (q->part.parts == 0) return;
@@ -184,8 +134,25 @@ static void check_parts(const request *q, struct argp_state *state) {
                q->crowns * q->pavilions);
 }
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_SIZE(request, KEY_GRID, crowns, pavilions, ABBE_GEM_MOST_ANGLES),
+    ABBE_TAKE_TARGET(request, 'o', out, ".asc"),
+    ABBE_TAKE_TEXT(request, KEY_PLOT, plot),
+    ABBE_TAKE_CHILD(request, 0, stone.in),
+    ABBE_TAKE_NUMBER(request, KEY_HEAD, head_deg, 0, 44.999),
+    ABBE_TAKE_RANGE(request, KEY_RANGE, stone.from_nm, stone.to_nm),
+    ABBE_TAKE_COUNT(request, KEY_SIZE, size, 8, ABBE_GEM_MOST_SIDE),
+    ABBE_TAKE_COUNT(request, KEY_THREADS, threads, 1, 1024),
+    ABBE_TAKE_TARGET(request, KEY_PAIRS, pairs, ".csv"),
+    ABBE_TAKE_FLAG(request, KEY_MERGE, merge),
+    ABBE_TAKE_NEEDED(request, stone.in.material_name,
+                     "of which stone? Give --material NAME; 'abbe materials list' has them"),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *q = state->input;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case KEY_MEASURE:
     read_measure(q, arg);
@@ -196,30 +163,27 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case KEY_PAVILION:
     read_angles(q, "--pavilion", arg, q->pavilion);
     return 0;
-  case KEY_GRID:
-    abbe_command_size(q->stone.in.program, "--grid", arg, ABBE_GEM_MOST_ANGLES, &q->crowns,
-                      &q->pavilions);
-    return 0;
-  case 'o':
-    q->out = abbe_command_target(q->stone.in.program, "--output", arg, ".asc");
-    return 0;
-  case KEY_PLOT:
-    q->plot = arg;
-    return 0;
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &q->stone.in;
-    return 0;
   case ARGP_KEY_END:
-    if (q->stone.in.material_name == NULL)
-      argp_error(state, "of which stone? Give --material NAME; 'abbe materials list' has them");
     check_parts(q, state);
     return 0;
   case ARGP_KEY_ARG:
     if (q->stone.in.path == NULL) return ARGP_ERR_UNKNOWN; /* the design, which is the child's */
     q->table[q->tables++] = arg;
     return 0;
+  case KEY_TILT:
+    read_tilt(q, arg);
+    return 0;
+  case KEY_AXIS:
+    if (strchr(arg, 'x') == NULL)
+      q->stone.axis = arg;
+    else
+      abbe_command_size(state->name, "--axis", arg, ABBE_GEM_MOST_ANGLES, &q->tilts, &q->azimuths);
+    return 0;
+  case KEY_PART:
+    abbe_command_read_part(state->name, arg, &q->part);
+    return 0;
   default:
-    return parse_more(key, arg, q);
+    return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -370,26 +334,6 @@ static abbe_result search(const request *q, abbe_gem_optimum *o, abbe_error *err
   return result;
 }
 
-enum { KEEP_S = 10 }; /* between two writings of what a rank has judged */
-
-static abbe_result search_together(const request *q, abbe_gem_optimum *o, abbe_error *error) {
-  const abbe_gem_stone_input *s = &q->stone;
-  abbe_progress progress;
-  abbe_progress_begin(&progress, "searching", s->in.quiet);
-  const abbe_gem_optimum_desc search = describe(q, &progress);
-  const abbe_ranked_optimum_desc desc = {.cut = &s->in.cut,
-                                         .polyhedron = &s->in.stone,
-                                         .material = s->in.material,
-                                         .wavelengths = &s->wavelengths,
-                                         .weights = &s->weights,
-                                         .search = &search,
-                                         .path = kept_beside(q),
-                                         .keep_s = KEEP_S};
-  const abbe_result result = abbe_ranked_optimum_find(&q->job->ranks, &desc, o, error);
-  abbe_progress_end(&progress);
-  return result;
-}
-
 /* All pairs are known. */
 static abbe_result write_all(request *q, const abbe_gem_optimum *o, abbe_error *error) {
   const abbe_gem_stone_input *s = &q->stone;
@@ -398,7 +342,6 @@ static abbe_result write_all(request *q, const abbe_gem_optimum *o, abbe_error *
   if (result == ABBE_OK && q->plot != NULL)
     result = abbe_gem_optimise_plot(q->plot, &s->in, o, measures[q->measure].text, error);
   if (result == ABBE_OK && q->out != NULL) result = write_best(q, o, error);
-  if (result == ABBE_OK && q->job != NULL) abbe_rank_files_remove(kept_beside(q));
   if (result == ABBE_OK && !s->in.json && q->part.parts > 0)
     printf("%zu of %zu pairs are in %s\n",
            o->crowns * o->pavilions - abbe_gem_optimum_missing(o, NULL), o->crowns * o->pavilions,
@@ -422,18 +365,14 @@ static abbe_result run(request *q, abbe_error *error) {
     return result;
   }
   if (result == ABBE_OK) result = find_angles(q, error);
-  result = abbe_rank_job_agree(q->job, result, error);
-  if (result == ABBE_OK)
-    result = q->job != NULL ? search_together(q, &optimum, error)
-             : q->merge     ? merge(q, &optimum, error)
-                            : search(q, &optimum, error);
-  if (result == ABBE_OK && !abbe_rank_job_is_silent(q->job)) result = write_all(q, &optimum, error);
+  if (result == ABBE_OK) result = q->merge ? merge(q, &optimum, error) : search(q, &optimum, error);
+  if (result == ABBE_OK) result = write_all(q, &optimum, error);
   abbe_gem_optimum_free(&optimum);
   abbe_gem_stone_input_free(&q->stone);
   return result;
 }
 
-static int run_command(int argc, char **argv, abbe_rank_job *job) {
+int abbe_gem_optimise(int argc, char **argv) {
   static const struct argp_child children[] = {{&abbe_gem_input_argp, 0, NULL, 0}, {0}};
   static const struct argp argp = {
       options,
@@ -456,24 +395,13 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
                .head_deg = ABBE_GEM_HEAD_DEG,
                .crowns = 21,
                .pavilions = 21,
-               .size = 32,
-               .job = job};
+               .size = 32};
   q.table = calloc((size_t)argc, sizeof *q.table);
   abbe_error error = {0};
   abbe_result result = ABBE_OK;
   if (q.table == NULL) result = abbe_error_set(&error, ABBE_NO_MEMORY, "no memory for arguments");
   if (result == ABBE_OK) abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
-  if (result == ABBE_OK && job != NULL) job->ready();
-  if (abbe_rank_job_is_silent(job)) q.stone.in.quiet = true;
   if (result == ABBE_OK) result = run(&q, &error);
   free(q.table);
-  return abbe_rank_job_end(job, argv[0], result, &error);
-}
-
-int abbe_gem_optimise(int argc, char **argv) {
-  return run_command(argc, argv, NULL);
-}
-
-int abbe_gem_optimise_by_ranks(int argc, char **argv, abbe_rank_job *job) {
-  return run_command(argc, argv, job);
+  return abbe_command_end(argv[0], result, &error);
 }

@@ -62,71 +62,34 @@ static const struct argp_option options[] = {
     {"threads", KEY_THREADS, "N", 0, "without it, all; results do not depend on it", 0},
     {0}};
 
-static error_t parse_more(int key, char *arg, request *q) {
-  switch (key) {
-  case KEY_RANGE:
-    abbe_command_range(q->stone.in.program, "--range", arg, &q->stone.from_nm, &q->stone.to_nm);
-    return 0;
-  case KEY_WAVELENGTHS:
-    q->stone.count = abbe_command_count(q->stone.in.program, "--wavelengths", arg, 1, 256);
-    return 0;
-  case KEY_SIZE:
-    q->size = abbe_command_count(q->stone.in.program, "--size", arg, 8, ABBE_GEM_MOST_SIDE);
-    return 0;
-  case KEY_REPEATS:
-    q->repeats =
-        abbe_command_count(q->stone.in.program, "--repeats", arg, 3, ABBE_GEM_MOST_REPEATS);
-    return 0;
-  case KEY_THREADS:
-    q->threads = abbe_command_count(q->stone.in.program, "--threads", arg, 1, 1024);
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
+static const abbe_take takes[] = {
+    ABBE_TAKE_TARGET(request, 'o', out, ".pdf"),
+    ABBE_TAKE_FLAG(request, KEY_CSV, csv),
+    ABBE_TAKE_TEXT(request, KEY_PICTURE, picture),
+    ABBE_TAKE_TEXT(request, KEY_IDEAL, ideal),
+    ABBE_TAKE_TEXT(request, KEY_MAPS, maps),
+    ABBE_TAKE_TEXT(request, KEY_AXIS, stone.axis),
+    ABBE_TAKE_NUMBER(request, KEY_HEAD, head_deg, 0, 44.999),
+    ABBE_TAKE_NUMBER(request, KEY_TILT, tilt_deg, 0, 90),
+    ABBE_TAKE_NUMBER(request, KEY_STEP, step_deg, 0.1, 90),
+    ABBE_TAKE_CHILD(request, 0, stone.in),
+    ABBE_TAKE_RANGE(request, KEY_RANGE, stone.from_nm, stone.to_nm),
+    ABBE_TAKE_COUNT(request, KEY_WAVELENGTHS, stone.count, 1, 256),
+    ABBE_TAKE_COUNT(request, KEY_SIZE, size, 8, ABBE_GEM_MOST_SIDE),
+    ABBE_TAKE_COUNT(request, KEY_REPEATS, repeats, 3, ABBE_GEM_MOST_REPEATS),
+    ABBE_TAKE_COUNT(request, KEY_THREADS, threads, 1, 1024),
+    {0},
+};
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
-  request *q = state->input;
-  switch (key) {
-  case 'o':
-    q->out = abbe_command_target(q->stone.in.program, "--output", arg, ".pdf");
-    return 0;
-  case KEY_CSV:
-    q->csv = true;
-    return 0;
-  case KEY_PICTURE:
-    q->picture = arg;
-    return 0;
-  case KEY_IDEAL:
-    q->ideal = arg;
-    return 0;
-  case KEY_MAPS:
-    q->maps = arg;
-    return 0;
-  case KEY_AXIS:
-    q->stone.axis = arg;
-    return 0;
-  case KEY_HEAD:
-    q->head_deg = abbe_command_number(q->stone.in.program, "--head-shadow", arg, 0, 44.999);
-    return 0;
-  case KEY_TILT:
-    q->tilt_deg = abbe_command_number(q->stone.in.program, "--tilt", arg, 0, 90);
-    return 0;
-  case KEY_STEP:
-    q->step_deg = abbe_command_number(q->stone.in.program, "--step", arg, 0.1, 90);
-    return 0;
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &q->stone.in;
-    return 0;
-  case ARGP_KEY_END:
-    if ((q->picture != NULL || q->ideal != NULL) && q->out == NULL)
-      argp_error(state, "--%s: on which page? Give -o FILE.pdf",
-                 q->picture != NULL ? "picture" : "ideal");
-    if (q->stone.in.json && q->csv) argp_error(state, "--json and --csv: one of them");
-    return 0;
-  default:
-    return parse_more(key, arg, q);
-  }
+  const request *q = state->input;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
+  if (key != ARGP_KEY_END) return ARGP_ERR_UNKNOWN;
+  if ((q->picture != NULL || q->ideal != NULL) && q->out == NULL)
+    argp_error(state, "--%s: on which page? Give -o FILE.pdf",
+               q->picture != NULL ? "picture" : "ideal");
+  if (q->stone.in.json && q->csv) argp_error(state, "--json and --csv: one of them");
+  return 0;
 }
 
 static abbe_gem_judgement_desc describe(const request *q, abbe_progress *progress) {

@@ -2,6 +2,7 @@
 #include "cli/gem/gem.h"
 
 #include "base/maths.h"
+#include "cli/base/command.h"
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/plot/sheet.h"
 #include "scenes/cuts/cut_file.h"

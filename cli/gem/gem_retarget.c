@@ -39,38 +39,26 @@ static const struct argp_option options[] = {
      "angle of the crown's main facets; without it, by the pavilion's tangent ratio", 0},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_CHILD(request, 0, in),
+    ABBE_TAKE_TEXT(request, 'o', output),
+    ABBE_TAKE_NUMBER(request, OPTION_INDEX, index, 1.01, 5),
+    ABBE_TAKE_NUMBER(request, OPTION_FROM, from, 1.01, 5),
+    ABBE_TAKE_NUMBER(request, OPTION_CROWN, crown_deg, 1, 85),
+    ABBE_TAKE_NUMBER(request, OPTION_PAVILION, pavilion_deg, 1, 85),
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
-  request *q = state->input;
-  const char *p = q->in.program;
-  switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &q->in;
-    return 0;
-  case 'o':
-    q->output = text;
-    return 0;
-  case OPTION_INDEX:
-    q->index = abbe_command_number(p, "--index", text, 1.01, 5);
-    return 0;
-  case OPTION_FROM:
-    q->from = abbe_command_number(p, "--from-index", text, 1.01, 5);
-    return 0;
-  case OPTION_CROWN:
-    q->crown_deg = abbe_command_number(p, "--crown", text, 1, 85);
-    return 0;
-  case OPTION_PAVILION:
-    q->pavilion_deg = abbe_command_number(p, "--pavilion", text, 1, 85);
-    return 0;
-  case ARGP_KEY_END:
-    if (q->in.material_name == NULL && q->index == 0 && q->crown_deg == 0 && q->pavilion_deg == 0)
-      argp_error(state, "for which stone? Give --material NAME, --index N, or angles by --pavilion "
-                        "and --crown");
-    if (q->in.material_name != NULL && q->index > 0)
-      argp_error(state, "--material and --index: one of them");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
+  const request *q = state->input;
+  if (abbe_take_option(takes, key, text, state)) return 0;
+  if (key != ARGP_KEY_END) return ARGP_ERR_UNKNOWN;
+  if (q->in.material_name == NULL && q->index == 0 && q->crown_deg == 0 && q->pavilion_deg == 0)
+    argp_error(state, "for which stone? Give --material NAME, --index N, or angles by --pavilion "
+                      "and --crown");
+  if (q->in.material_name != NULL && q->index > 0)
+    argp_error(state, "--material and --index: one of them");
+  return 0;
 }
 
 static double main_angle(const abbe_gem_input *in, abbe_cut_side which, bool *is_there) {

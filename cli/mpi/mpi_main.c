@@ -1,7 +1,6 @@
 #include "cli/base/command.h"
 #include "cli/base/output.h"
 #include "cli/base/rank_job.h"
-#include "cli/gem/gem.h"
 
 #include "colorimetry/image/display_ocio.h"
 
@@ -73,15 +72,13 @@ static void say(const char *message) {
   fputs(message, stderr);
 }
 
-/* What ranks share, by the words that name it. */
+/* What ranks share, by the word that names it. */
 static const struct {
-  const char *word, *verb, *program, *shared;
+  const char *word, *program, *shared;
   int (*run)(int argc, char **argv, abbe_rank_job *job);
 } commands[] = {
-    {"trace", NULL, "abbe-mpi trace", "passes, or frames over time", abbe_trace_by_ranks},
-    {"render", NULL, "abbe-mpi render", "frames from all around, or over time",
-     abbe_render_by_ranks},
-    {"gem", "optimise", "abbe-mpi gem optimise", "pairs of angles", abbe_gem_optimise_by_ranks}};
+    {"trace", "abbe-mpi trace", "passes, or frames over time", abbe_trace_by_ranks},
+    {"render", "abbe-mpi render", "frames from all around, or over time", abbe_render_by_ranks}};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static int help(FILE *to) {
@@ -90,9 +87,7 @@ static int help(FILE *to) {
               "usage: mpirun abbe-mpi COMMAND [OPTION…] FILE\n\n"
               "Options are those of abbe COMMAND. Ranks share\n");
   for (int i = 0; i < COMMANDS; i++)
-    fprintf(to, "  %s%s%-*s %s\n", commands[i].word, commands[i].verb != NULL ? " " : "",
-            13 - (int)strlen(commands[i].word), commands[i].verb != NULL ? commands[i].verb : "",
-            commands[i].shared);
+    fprintf(to, "  %-7s %s\n", commands[i].word, commands[i].shared);
   fprintf(to, "\n  mpirun -n 4 abbe-mpi trace scenes/gem.yaml -o gem.exr --spp 256 --resume\n\n"
               "Exit codes: 0 done, 1 failed, 2 used wrongly.\n");
   return to == stdout ? ABBE_EXIT_DONE : ABBE_EXIT_USAGE;
@@ -101,9 +96,7 @@ static int help(FILE *to) {
 /* The command that the arguments begin with, or COMMANDS. */
 static int find_command(int argc, char **argv) {
   for (int i = 0; i < COMMANDS; i++)
-    if (argc >= 2 && strcmp(argv[1], commands[i].word) == 0 &&
-        (commands[i].verb == NULL || (argc >= 3 && strcmp(argv[2], commands[i].verb) == 0)))
-      return i;
+    if (argc >= 2 && strcmp(argv[1], commands[i].word) == 0) return i;
   return COMMANDS;
 }
 
@@ -117,11 +110,10 @@ static int run(int argc, char **argv, int command) {
                        .ready = ready};
   if (own_rank > 0) tell_ready(true);
   if (!is_ready && own_rank > 0) return ABBE_EXIT_USAGE;
-  const int words = commands[command].verb == NULL ? 1 : 2;
   char program[64];
   snprintf(program, sizeof program, "%s", commands[command].program);
-  argv[words] = program;
-  const int code = commands[command].run(argc - words, argv + words, &job);
+  argv[1] = program;
+  const int code = commands[command].run(argc - 1, argv + 1, &job);
   if (job.alone && count > 1) {
     has_failed = true;
     fflush(NULL);

@@ -17,7 +17,7 @@
 #include "spectral/formats/material_write.h"
 #include "validation/lab/known/known_answers.h"
 #include "validation/measure/field.h"
-#include "validation/trace/tracer/reference.h"
+#include "validation/trace/tracer/tracer.h"
 
 /* ---- what is noted of a run ---- */
 
@@ -209,17 +209,13 @@ static void with_scenes(FILE *to) {
   in_folder("gem.pov", path);
   OK(abbe_pov_file_write(path, &scene, NULL, &error));
   note_file(to, "gem.pov");
-  OWNED(abbe_image, map) = {0};
-  const abbe_reference_desc desc = FIELDS(.trace = {.width = 6,
-                                                    .height = 4,
-
-                                                    .photons = 64,
-                                                    .threads = 1,
-                                                    .map_width = 4,
-                                                    .map_height = 4,
-                                                    .seed = 1},
-                                          .passes = 2);
-  MADE(abbe_image, picture, abbe_reference_trace(&scene, &desc, &picture, &map, &error));
+  const abbe_trace_desc desc = FIELDS(.width = 6, .height = 4, .photons = 64, .threads = 1,
+                                      .map_width = 4, .map_height = 4, .seed = 1);
+  abbe_tracer *tracer;
+  OK(abbe_tracer_make(&scene, &desc, &tracer, &error));
+  for (int i = 0; i < 2; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
+  MADE(abbe_image, picture, abbe_tracer_picture(tracer, &picture, &error));
+  abbe_tracer_free(tracer);
   note_image(to, "traced", &picture);
 }
 

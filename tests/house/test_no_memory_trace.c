@@ -13,7 +13,6 @@
 #include "validation/measure/outline.h"
 #include "validation/trace/denoise.h"
 #include "validation/trace/tracer/checkpoint.h"
-#include "validation/trace/tracer/reference.h"
 
 #define FUZZ ABBE_SOURCE_DIR "/tests/fuzz/"
 
@@ -57,15 +56,6 @@ static abbe_result trace(abbe_error *error) {
   if (result == ABBE_OK) digest_image(&map);
   if (result == ABBE_OK) digest_image(&filtered);
   abbe_tracer_free(tracer);
-  return result;
-}
-
-static abbe_result reference(abbe_error *error) {
-  const abbe_reference_desc desc = {
-      .trace = tiny, .passes = 2, .checkpoint = operation_path("reference.checkpoint")};
-  OWNED(abbe_image, picture) = {0}, map = {0};
-  const abbe_result result = abbe_reference_trace(&shared, &desc, &picture, &map, error);
-  if (result == ABBE_OK) digest_image(&picture);
   return result;
 }
 
@@ -173,8 +163,7 @@ static void teardown(void) {
 GROUP(setup, teardown);
 
 TEST(traces) {
-  static const operation list[] = {
-      {"trace", trace, 20}, {"reference", reference, 5}, {"checkpoint", checkpoint, 0}};
+  static const operation list[] = {{"trace", trace, 20}, {"checkpoint", checkpoint, 0}};
   operation_check_all(list, sizeof list / sizeof *list);
 }
 
