@@ -159,13 +159,19 @@ static void take_stops(const char *text, request *r, struct argp_state *state) {
     argp_error(state, "--stops '%s' is no range such as -10:6.5", text);
 }
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_CHILD(request, 0, spectral),
+    ABBE_TAKE_CHILD(request, 1, screen),
+    ABBE_TAKE_TEXT(request, KEY_LAYER, layer),
+    ABBE_TAKE_FLAG(request, KEY_LIST, list),
+    ABBE_TAKE_COUNT(request, KEY_NODES, nodes, ABBE_LUT_MIN_NODES, ABBE_LUT_MAX_NODES),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &r->spectral;
-    state->child_inputs[1] = &r->screen;
-    return 0;
   case 'o':
     if (abbe_lut_is_meant(arg))
       r->out = arg;
@@ -175,16 +181,6 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case KEY_SOURCE:
     r->source = arg;
     r->screen.display.source_space = arg;
-    return 0;
-  case KEY_LAYER:
-    r->layer = arg;
-    return 0;
-  case KEY_LIST:
-    r->list = true;
-    return 0;
-  case KEY_NODES:
-    r->nodes =
-        abbe_command_count(state->name, "--nodes", arg, ABBE_LUT_MIN_NODES, ABBE_LUT_MAX_NODES);
     return 0;
   case KEY_STOPS:
     take_stops(arg, r, state);

@@ -174,23 +174,14 @@ static const abbe_take takes[] = {
     ABBE_TAKE_OUTPUT(request, KEY_PNG, png, png),
     ABBE_TAKE_FLAG(request, KEY_JSON, json),
     ABBE_TAKE_ARGUMENT(request, input),
+    ABBE_TAKE_NUMBER(request, KEY_EXPOSURE, exposure, -ABBE_DISPLAY_MAX_EXPOSURE,
+                     ABBE_DISPLAY_MAX_EXPOSURE),
+    ABBE_TAKE_NEEDED(request, input, "of which scene or picture?"),
     {0},
 };
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
-  request *r = state->input;
-  if (abbe_take_option(takes, key, arg, state)) return 0;
-  switch (key) {
-  case KEY_EXPOSURE:
-    r->exposure = abbe_command_number(state->name, "--exposure", arg, -ABBE_DISPLAY_MAX_EXPOSURE,
-                                      ABBE_DISPLAY_MAX_EXPOSURE);
-    return 0;
-  case ARGP_KEY_END:
-    if (r->input == NULL) argp_error(state, "of which scene or picture?");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
+  return abbe_take_option(takes, key, arg, state) ? 0 : ARGP_ERR_UNKNOWN;
 }
 
 int abbe_command_environment(int argc, char **argv) {

@@ -85,6 +85,8 @@ static const abbe_take takes[] = {
     ABBE_TAKE_TEXT(request, OPTION_MATERIALS, materials),
     ABBE_TAKE_FLAG(request, OPTION_JSON, json),
     ABBE_TAKE_FLAG(request, 'q', quiet),
+    ABBE_TAKE_NEEDED(request, scene, "which scene? Give a file such as scenes/gem.yaml"),
+    ABBE_TAKE_NEEDED(request, output, "where to? Give -o FILE.pbrt, for one"),
     {0},
 };
 
@@ -96,8 +98,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     abbe_scene_input_take_file(&q->changes, &q->scene, text, state);
     return 0;
   case ARGP_KEY_END:
-    if (q->scene == NULL) argp_error(state, "which scene? Give a file such as scenes/gem.yaml");
-    if (q->output == NULL) argp_error(state, "where to? Give -o FILE.pbrt, for one");
     choose_target(q, state);
     return 0;
   default:

@@ -151,15 +151,12 @@ enum { KEY_JSON = 256 };
 static const struct argp_option options[] = {
     {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0}, {0}};
 
+static const abbe_take takes[] = {ABBE_TAKE_FLAG(request, KEY_JSON, json), {0}};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
-  switch (key) {
-  case KEY_JSON:
-    r->json = true;
-    return 0;
-  default:
-    return abbe_arguments_one_file(key, arg, &r->path, state);
-  }
+  if (abbe_take_option(takes, key, arg, state)) return 0;
+  return abbe_arguments_one_file(key, arg, &r->path, state);
 }
 
 static const struct argp parser = {

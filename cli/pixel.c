@@ -286,6 +286,7 @@ static const abbe_take takes[] = {
     ABBE_TAKE_TEXT(request, KEY_LAYER, layer),
     ABBE_TAKE_TEXT(request, KEY_PLOT, plot),
     ABBE_TAKE_FLAG(request, KEY_JSON, json),
+    ABBE_TAKE_CHILD(request, 0, spectral),
     {0},
 };
 
@@ -293,9 +294,6 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
   if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &r->spectral;
-    return 0;
   case ARGP_KEY_ARG:
     if (r->placed) argp_error(state, "'%s' is one argument too many", arg);
     if (r->path == NULL)

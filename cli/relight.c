@@ -58,6 +58,8 @@ static const abbe_take takes[] = {
     ABBE_TAKE_TEXT(request, KEY_LAYER, desc.layer),
     ABBE_TAKE_FLAG(request, KEY_BANDS, desc.bands),
     ABBE_TAKE_FLAG(request, KEY_RELATIVE, desc.relative),
+    ABBE_TAKE_CHILD(request, 0, spectral),
+    ABBE_TAKE_CHILD(request, 1, screen),
     {0},
 };
 
@@ -66,10 +68,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   request *r = state->input;
   if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &r->spectral;
-    state->child_inputs[1] = &r->screen;
-    return 0;
   case KEY_SPACE:
     for (int i = 0; i < ABBE_RGB_SPACE_COUNT; i++)
       spaces[i] = abbe_rgb_space_name((abbe_rgb_space)i);

@@ -110,32 +110,6 @@ static void take_shells(request *q, const char *text) {
   }
 }
 
-static error_t parse_work(int key, char *text, request *q) {
-  abbe_volume_fill_desc *d = &q->desc;
-  const char *p = q->program;
-  switch (key) {
-  case OPTION_PHOTONS:
-    d->photons = abbe_command_count(p, "--photons", text, 1, ABBE_VOLUME_FILL_MOST_PHOTONS);
-    return 0;
-  case OPTION_PASSES:
-    d->passes = abbe_command_count(p, "--passes", text, 1, ABBE_VOLUME_FILL_MOST_PASSES);
-    return 0;
-  case OPTION_UNTIL_ERROR:
-    d->until_error = abbe_command_number(p, "--until-error", text, 1e-6, 1);
-    return 0;
-  case OPTION_CHECKPOINT:
-    d->checkpoint = text;
-    return 0;
-  case OPTION_MATERIALS:
-    q->materials = text;
-    return 0;
-  default:
-    return abbe_work_options_take(&q->work, key, text, p) == 0
-               ? 0
-               : abbe_scene_input_take(&q->changes, key, text, p);
-  }
-}
-
 static const abbe_take takes[] = {
     ABBE_TAKE_TARGET(request, 'o', out, ".exr"),
     ABBE_TAKE_FLAG(request, OPTION_JSON, json),
@@ -146,6 +120,13 @@ static const abbe_take takes[] = {
     ABBE_TAKE_COUNT(request, OPTION_RAYS, desc.exits, 1, ABBE_LIGHT_EXITS_MOST),
     ABBE_TAKE_FLAG(request, OPTION_ASYMMETRIC, desc.asymmetric),
     ABBE_TAKE_NUMBER(request, OPTION_RADII, radii, 1.1, 1000),
+    ABBE_TAKE_COUNT(request, OPTION_PHOTONS, desc.photons, 1, ABBE_VOLUME_FILL_MOST_PHOTONS),
+    ABBE_TAKE_COUNT(request, OPTION_PASSES, desc.passes, 1, ABBE_VOLUME_FILL_MOST_PASSES),
+    ABBE_TAKE_NUMBER(request, OPTION_UNTIL_ERROR, desc.until_error, 1e-6, 1),
+    ABBE_TAKE_TEXT(request, OPTION_CHECKPOINT, desc.checkpoint),
+    ABBE_TAKE_TEXT(request, OPTION_MATERIALS, materials),
+    ABBE_TAKE_NEEDED(request, scene, "of which scene? Try scenes/sphere.yaml"),
+    ABBE_TAKE_NEEDED(request, out, "where to? Give -o FILE.exr"),
     {0},
 };
 
@@ -169,12 +150,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (q->scene != NULL) argp_error(state, "one scene at a time: what is '%s'?", text);
     q->scene = text;
     return 0;
-  case ARGP_KEY_END:
-    if (q->scene == NULL) argp_error(state, "of which scene? Try scenes/sphere.yaml");
-    if (q->out == NULL) argp_error(state, "where to? Give -o FILE.exr");
-    return 0;
   default:
-    return parse_work(key, text, q);
+    return abbe_work_options_take(&q->work, key, text, q->program) == 0
+               ? 0
+               : abbe_scene_input_take(&q->changes, key, text, q->program);
   }
 }
 

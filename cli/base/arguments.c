@@ -335,6 +335,22 @@ bool abbe_take_option(const abbe_take *takes, int key, char *text, struct argp_s
     *(size_t *)word = abbe_command_count(state->name, called, text, (unsigned long)t->least,
                                          (unsigned long)t->most);
     break;
+  case ABBE_TAKES_LENGTH:
+    *number = abbe_command_length(state->name, called, text, t->least, t->most);
+    break;
+  case ABBE_TAKES_SIZE:
+    abbe_command_size(state->name, called, text, (unsigned long)t->most, (size_t *)word,
+                      (size_t *)(request + t->to));
+    break;
+  case ABBE_TAKES_CHILD:
+    for (; t->kind != 0; t++)
+      if (t->kind == ABBE_TAKES_CHILD) state->child_inputs[(size_t)t->least] = request + t->at;
+    break;
+  case ABBE_TAKES_NEEDED:
+    for (; t->kind != 0; t++)
+      if (t->kind == ABBE_TAKES_NEEDED && *(const char **)(request + t->at) == NULL)
+        argp_error(state, "%s", t->ending);
+    return false;
   case ABBE_TAKES_RANGE:
     abbe_command_range(state->name, called, text, number, end);
     break;

@@ -61,7 +61,11 @@ enum {
   ABBE_TAKES_COUNT,
   ABBE_TAKES_RANGE,
   ABBE_TAKES_TARGET,
-  ABBE_TAKES_OUTPUT
+  ABBE_TAKES_OUTPUT,
+  ABBE_TAKES_LENGTH,
+  ABBE_TAKES_SIZE,
+  ABBE_TAKES_CHILD,
+  ABBE_TAKES_NEEDED
 };
 #define ABBE_TAKE_AT(request, field, type)                                                         \
   (offsetof(request, field) + 0 * sizeof(char[_Generic(((request *)0)->field, type : 1)]))
@@ -78,6 +82,22 @@ enum {
   { ABBE_TAKES_NUMBER, key, ABBE_TAKE_AT(request, field, double), 0, least, most, NULL }
 #define ABBE_TAKE_COUNT(request, key, field, least, most)                                          \
   { ABBE_TAKES_COUNT, key, ABBE_TAKE_AT(request, field, size_t), 0, least, most, NULL }
+/* double: a length with its unit, from least to most m. */
+#define ABBE_TAKE_LENGTH(request, key, field, least, most)                                         \
+  { ABBE_TAKES_LENGTH, key, ABBE_TAKE_AT(request, field, double), 0, least, most, NULL }
+/* Two size_t, of a value such as 640x480, to most. */
+#define ABBE_TAKE_SIZE(request, key, width, height, most)                                          \
+  {                                                                                                \
+    ABBE_TAKES_SIZE, key, ABBE_TAKE_AT(request, width, size_t),                                    \
+        ABBE_TAKE_AT(request, height, size_t), 0, most, NULL                                       \
+  }
+/* The field is what the index-th child of the parser fills. */
+#define ABBE_TAKE_CHILD(request, index, field)                                                     \
+  { ABBE_TAKES_CHILD, ARGP_KEY_INIT, offsetof(request, field), 0, index, 0, NULL }
+/* const char *: at the end of the line there must be one; else the sentence says what lacks. Other
+ * conditions of the end may follow: its key is not taken. */
+#define ABBE_TAKE_NEEDED(request, field, sentence)                                                 \
+  { ABBE_TAKES_NEEDED, ARGP_KEY_END, ABBE_TAKE_AT(request, field, const char *), 0, 0, 0, sentence }
 /* Two doubles, of a value such as 380:780. */
 #define ABBE_TAKE_RANGE(request, key, from, to)                                                    \
   {                                                                                                \

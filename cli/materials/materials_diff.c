@@ -136,25 +136,19 @@ static const struct argp_option options[] = {
      "end with 3 where a row is missing or any index changes by more than this", 0},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
+    ABBE_TAKE_NUMBER(request, KEY_TOLERANCE, tolerance, 0, 1e3),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
-  switch (key) {
-  case ABBE_MATERIALS_KEY_JSON:
-    r->json = true;
-    return 0;
-  case KEY_TOLERANCE:
-    r->tolerance = abbe_command_number(r->program, "--tolerance", arg, 0, 1e3);
-    return 0;
-  case ARGP_KEY_ARG:
-    if (r->second != NULL) argp_error(state, "'%s' is one argument too many", arg);
-    if (r->first == NULL)
-      r->first = arg;
-    else
-      r->second = arg;
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
+  if (abbe_take_option(takes, key, arg, state)) return 0;
+  if (key != ARGP_KEY_ARG) return ARGP_ERR_UNKNOWN;
+  if (r->second != NULL) argp_error(state, "'%s' is one argument too many", arg);
+  *(r->first == NULL ? &r->first : &r->second) = arg;
+  return 0;
 }
 
 static const struct argp parser = {

@@ -18,19 +18,14 @@ typedef struct plan_options {
   bool json;
 } plan_options;
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_CHILD(plan_options, 0, render),
+    ABBE_TAKE_FLAG(plan_options, 'j', json),
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
-  plan_options *o = state->input;
-  (void)text;
-  switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &o->render;
-    return 0;
-  case 'j':
-    o->json = true;
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
+  return abbe_take_option(takes, key, text, state) ? 0 : ARGP_ERR_UNKNOWN;
 }
 
 static void print_text(const abbe_plan *plan) {

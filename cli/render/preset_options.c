@@ -44,22 +44,21 @@ static const char *const names[] = {ABBE_PRESETS(ABBE_NAME_OF)};
 static const char *const tools[] = {ABBE_PICTURE_TOOLS(ABBE_TOOL_OF)};
 static const char *const times[] = {"picture", "frame"};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_NUMBER(abbe_preset_options, OPTION_MAX_ERROR, request.max_error, 1e-6, 1e6),
+    ABBE_TAKE_NUMBER(abbe_preset_options, OPTION_BUDGET, request.budget_ms, 1e-3, 1e9),
+    ABBE_TAKE_TEXT(abbe_preset_options, OPTION_PRESETS, request.file),
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   abbe_preset_options *o = state->input;
   abbe_preset_request *q = &o->request;
   int asked;
+  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
   case OPTION_PRESET:
     q->name = names[abbe_command_choice(o->program, "--preset", text, names, ABBE_PRESET_COUNT)];
-    return 0;
-  case OPTION_MAX_ERROR:
-    q->max_error = abbe_command_number(o->program, "--max-error", text, 1e-6, 1e6);
-    return 0;
-  case OPTION_BUDGET:
-    q->budget_ms = abbe_command_number(o->program, "--budget-ms", text, 1e-3, 1e9);
-    return 0;
-  case OPTION_PRESETS:
-    q->file = text;
     return 0;
   case OPTION_FOR:
     o->of_frame = abbe_command_choice(o->program, "--for", text, times, 2) == 1;

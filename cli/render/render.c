@@ -61,41 +61,35 @@ static void check_ranks(const request *q, struct argp_state *state) {
                       "--max-error");
 }
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_CHILD(request, 0, render),
+    ABBE_TAKE_CHILD(request, 1, map),
+    ABBE_TAKE_CHILD(request, 2, preset),
+    ABBE_TAKE_CHILD(request, 3, errors),
+    ABBE_TAKE_CHILD(request, 4, series),
+    ABBE_TAKE_CHILD(request, 5, screen),
+    ABBE_TAKE_OUTPUT(request, 'o', exr, png),
+    ABBE_TAKE_OUTPUT(request, OPTION_PNG, png, png),
+    ABBE_TAKE_FLAG(request, OPTION_AOVS, aovs),
+    ABBE_TAKE_COUNT(request, OPTION_BANDS, bands, 1, ABBE_RENDER_MAX_BANDS),
+    ABBE_TAKE_FLAG(request, OPTION_JSON, json),
+    ABBE_TAKE_FLAG(request, 'q', quiet),
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
 #define NAME_OF(code, name) name,
   static const char *const backends[] = {ABBE_CONTEXT_BACKENDS(NAME_OF)};
 #undef NAME_OF
   request *q = state->input;
   const char *p = q->render.program;
+  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &q->render;
-    state->child_inputs[1] = &q->map;
-    state->child_inputs[2] = &q->preset;
-    state->child_inputs[3] = &q->errors;
-    state->child_inputs[4] = &q->series;
-    state->child_inputs[5] = &q->screen;
-    return 0;
-  case 'o':
-    abbe_command_output(state->name, "-o", text, &q->exr, &q->png);
-    return 0;
-  case OPTION_PNG:
-    abbe_command_output(state->name, "--png", text, NULL, &q->png);
-    return 0;
-  case OPTION_AOVS:
-    q->aovs = true;
-    return 0;
-  case OPTION_BANDS:
-    q->bands = abbe_command_count(p, "--bands", text, 1, ABBE_RENDER_MAX_BANDS);
-    return 0;
   case OPTION_STATS:
     if (strcmp(text, "-") == 0)
       q->json = true;
     else
       q->stats = abbe_command_target(state->name, "--stats", text, ".json");
-    return 0;
-  case OPTION_JSON:
-    q->json = true;
     return 0;
   case OPTION_FRAMES:
     if (strchr(text, ':') != NULL)
@@ -109,9 +103,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_BACKEND:
     q->backend = (abbe_context_backend)abbe_command_choice(p, "--backend", text, backends,
                                                            ABBE_CONTEXT_BACKEND_COUNT);
-    return 0;
-  case 'q':
-    q->quiet = true;
     return 0;
   case ARGP_KEY_END:
     if (q->exr == NULL && q->png == NULL && q->stats == NULL && q->map.save == NULL && !q->json &&

@@ -131,35 +131,30 @@ static void take_setting(const abbe_render_setting *s, const char *text, const c
   }
 }
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_SIZE(abbe_render_options, OPTION_SIZE, desc.width, desc.height, ABBE_RENDER_MAX_SIDE),
+    ABBE_TAKE_RANGE(abbe_render_options, OPTION_RANGE, desc.min_nm, desc.max_nm),
+    ABBE_TAKE_FLAG(abbe_render_options, OPTION_UNFILLED, unfilled),
+    ABBE_TAKE_TEXT(abbe_render_options, OPTION_VOLUME, volume_path),
+    ABBE_TAKE_TEXT(abbe_render_options, OPTION_MATERIALS, materials),
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   abbe_render_options *o = state->input;
   abbe_render_desc *d = &o->desc;
   const char *p = o->program;
+  if (abbe_take_option(takes, key, text, state)) return 0;
   if (key >= OPTION_SETTING && key < OPTION_SETTING + (int)abbe_render_settings_count) {
     take_setting(&abbe_render_settings[key - OPTION_SETTING], text, p, d);
     return 0;
   }
   switch (key) {
-  case OPTION_SIZE:
-    abbe_command_size(p, "--size", text, ABBE_RENDER_MAX_SIDE, &d->width, &d->height);
-    return 0;
-  case OPTION_RANGE:
-    abbe_command_range(p, "--range", text, &d->min_nm, &d->max_nm);
-    return 0;
   case OPTION_POLYGONS:
     d->polygons = read_polygons(p, text);
     return 0;
   case OPTION_OBSERVER:
     d->observer = abbe_spectral_options_observer(p, text);
-    return 0;
-  case OPTION_UNFILLED:
-    o->unfilled = true;
-    return 0;
-  case OPTION_VOLUME:
-    o->volume_path = text;
-    return 0;
-  case OPTION_MATERIALS:
-    o->materials = text;
     return 0;
   case ARGP_KEY_ARG:
     abbe_scene_input_take_file(&o->changes, &o->scene, text, state);
@@ -224,20 +219,21 @@ static const struct argp_option options[] = {
      "the picture is its mean with the variants, with that one's errors: nearer to the truth", 4},
     {0}};
 
+static const abbe_take error_options_takes[] = {
+    ABBE_TAKE_TARGET(abbe_error_options, OPTION_ERROR_PNG, png, ".png"),
+    ABBE_TAKE_FLAG(abbe_error_options, OPTION_MEAN, mean),
+    {0},
+};
+
 static error_t error_options_parse(int key, char *text, struct argp_state *state) {
   abbe_error_options *o = state->input;
+  if (abbe_take_option(error_options_takes, key, text, state)) return 0;
   switch (key) {
   case OPTION_ERROR_BARS:
     o->asked = true;
     if (text != NULL)
       o->variants =
           abbe_command_count(o->program, "--error-bars", text, 2, ABBE_ERROR_BARS_MAX_VARIANTS);
-    return 0;
-  case OPTION_ERROR_PNG:
-    o->png = abbe_command_target(state->name, "--error-png", text, ".png");
-    return 0;
-  case OPTION_MEAN:
-    o->mean = true;
     return 0;
   case ARGP_KEY_END:
     if (!o->asked && (o->png != NULL || o->mean))

@@ -122,29 +122,11 @@ static error_t parse_work(int key, char *text, request *q) {
   abbe_trace_desc *d = &q->desc;
   const char *p = q->program;
   switch (key) {
-  case OPTION_SPP:
-    q->passes = abbe_command_count(p, "--spp", text, 1, MOST_PASSES);
-    return 0;
   case OPTION_PASSES:
     take_passes(q, text);
     return 0;
-  case OPTION_MERGE:
-    q->merge = true;
-    return 0;
-  case OPTION_INCOMPLETE:
-    q->incomplete = true;
-    return 0;
   case OPTION_MOVE:
     abbe_frame_series_take_move(&q->series, &q->changes, text);
-    return 0;
-  case OPTION_TIME:
-    q->seconds = abbe_command_number(p, "--time", text, 0.001, 1e9);
-    return 0;
-  case OPTION_UNTIL_ERROR:
-    q->until = abbe_command_number(p, "--until-error", text, 1e-9, 1e9);
-    return 0;
-  case OPTION_PHOTONS:
-    d->photons = abbe_command_count(p, "--photons", text, 1, ABBE_TRACER_MAX_PHOTONS);
     return 0;
   case OPTION_PHYSICS:
     d->physics.matched = abbe_command_choice(p, "--physics", text, physics, 2) == 1;
@@ -153,17 +135,11 @@ static error_t parse_work(int key, char *text, request *q) {
     d->polarisation =
         (abbe_trace_polarisation)abbe_command_choice(p, "--polarisation", text, polarisations, 3);
     return 0;
-  case OPTION_SIZE:
-    abbe_command_size(p, "--size", text, ABBE_TRACER_MAX_SIDE, &d->width, &d->height);
-    return 0;
   case OPTION_MAP:
     if (strchr(text, 'x') != NULL)
       abbe_command_size(p, "--map", text, ABBE_TRACER_MAX_SIDE, &d->map_width, &d->map_height);
     else
       d->map_width = d->map_height = abbe_command_count(p, "--map", text, 1, ABBE_TRACER_MAX_SIDE);
-    return 0;
-  case OPTION_BANDS:
-    d->bands = abbe_command_count(p, "--bands", text, 1, 256);
     return 0;
   case OPTION_SPACE:
     d->space =
@@ -216,6 +192,17 @@ static const abbe_take takes[] = {
     ABBE_TAKE_FLAG(request, OPTION_HALF, half),
     ABBE_TAKE_TEXT(request, OPTION_CHECKPOINT, checkpoint),
     ABBE_TAKE_FLAG(request, OPTION_RATES, rates),
+    ABBE_TAKE_CHILD(request, 0, map),
+    ABBE_TAKE_CHILD(request, 1, screen),
+    ABBE_TAKE_CHILD(request, 2, series),
+    ABBE_TAKE_COUNT(request, OPTION_SPP, passes, 1, MOST_PASSES),
+    ABBE_TAKE_FLAG(request, OPTION_MERGE, merge),
+    ABBE_TAKE_FLAG(request, OPTION_INCOMPLETE, incomplete),
+    ABBE_TAKE_NUMBER(request, OPTION_TIME, seconds, 0.001, 1e9),
+    ABBE_TAKE_NUMBER(request, OPTION_UNTIL_ERROR, until, 1e-9, 1e9),
+    ABBE_TAKE_COUNT(request, OPTION_PHOTONS, desc.photons, 1, ABBE_TRACER_MAX_PHOTONS),
+    ABBE_TAKE_SIZE(request, OPTION_SIZE, desc.width, desc.height, ABBE_TRACER_MAX_SIDE),
+    ABBE_TAKE_COUNT(request, OPTION_BANDS, desc.bands, 1, 256),
     {0},
 };
 
@@ -233,11 +220,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   request *q = state->input;
   if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &q->map;
-    state->child_inputs[1] = &q->screen;
-    state->child_inputs[2] = &q->series;
-    return 0;
   case OPTION_STATS:
     if (strcmp(text, "-") == 0)
       q->json = true;

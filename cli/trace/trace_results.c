@@ -157,14 +157,15 @@ static const struct argp_option options[] = {
      5},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_NUMBER(abbe_frame_series, OPTION_FPS, per_second, 0.1, 1000), {0}};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   abbe_frame_series *s = state->input;
+  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
   case OPTION_FRAMES:
     abbe_frame_series_take(s, text);
-    return 0;
-  case OPTION_FPS:
-    s->per_second = abbe_command_number(s->program, "--fps", text, 0.1, 1000);
     return 0;
   case OPTION_PART:
     abbe_command_read_part(s->program, text, &s->part);

@@ -87,6 +87,8 @@ static const abbe_take takes[] = {
     ABBE_TAKE_TEXT(view_options, OPTION_MATERIAL, changes.studio.material),
     ABBE_TAKE_TEXT(view_options, OPTION_VOLUME, volume),
     ABBE_TAKE_TEXT(view_options, OPTION_OCIO, ocio),
+    ABBE_TAKE_SIZE(view_options, OPTION_SIZE, width, height, 8192),
+    ABBE_TAKE_CHILD(view_options, 0, spectral),
     {0},
 };
 
@@ -136,17 +138,11 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   view_options *o = state->input;
   if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
-  case OPTION_SIZE:
-    abbe_command_size(o->program, "--size", text, 8192, &o->width, &o->height);
-    return 0;
   case OPTION_SERVE:
     o->port = (int)abbe_command_count(o->program, "--serve", text, 0, 65535);
     return 0;
   case OPTION_LAST:
     o->last = 1 + abbe_command_choice(o->program, "--last", text, stages, 5);
-    return 0;
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &o->spectral;
     return 0;
   case ARGP_KEY_ARG:
     take_file(o, text, state);
