@@ -1,11 +1,12 @@
 #include "gl/caustics/deposit_pass.h"
 
-#include "gl/caustics/splat_sums.h"
+#include "gl/caustics/path_splats.h"
 #include "gl/device/bindings.h"
 
 enum { SPLAT_BYTES = 4 * ABBE_SPLAT_WORDS };
 enum { LEAST_SPLATS = 1 << 12, FIRST_SPLATS = 1 << 20, MAX_SPLATS = 4 << 20 };
-enum { SPLATS_A_HIT = 4 }; /* capacity at first; the first frame makes more */
+enum { PAIR_INTERVALS = 8 }; /* pair_list.glsl */
+enum { SPLATS_A_HIT = 4 };   /* capacity at first; the first frame makes more */
 
 static const abbe_gpu_scene *scene_of(const abbe_deposit_pass *pass) {
   return pass->trace->spectra->scene;
@@ -34,9 +35,10 @@ abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refi
   abbe_gpu *gpu = trace->spectra->scene->gpu;
   *out = (abbe_deposit_pass){
       .trace = trace, .refine = refine, .map = map, .chunks = 1, .most_splats = MAX_SPLATS};
+  if (gpu->software) return ABBE_OK;
   abbe_result result =
       abbe_shader_variant_compute(photons, gpu, "photon_deposit.comp", NULL, &out->list, error);
-  if (result == ABBE_OK && !gpu->software)
+  if (result == ABBE_OK)
     result = abbe_shader_variant_compute(scene, gpu, "photon_splat.comp", NULL, &out->add, error);
   return result == ABBE_OK ? make_room(out, first_room(trace), error) : result;
 }
@@ -145,37 +147,137 @@ static bool goes_on(void *gpu) {
   return abbe_gpu_ask(gpu);
 }
 
-/* On the processor's own threads, which need no atomics. */
-static abbe_result add_here(abbe_deposit_pass *pass, size_t light, abbe_error *error) {
+/* Buffers that the processor reads and writes where they are. */
+typedef struct mapped {
+  const abbe_gl *gl;
+  GLuint buffer[16];
+  size_t count;
+  bool whole;
+} mapped;
+
+static void *map_buffer(mapped *m, GLuint buffer, GLbitfield access) {
+  GLint size = 0;
+  m->gl->BindBuffer(GL_COPY_READ_BUFFER, buffer);
+  m->gl->GetBufferParameteriv(GL_COPY_READ_BUFFER, GL_BUFFER_SIZE, &size);
+  void *at = m->gl->MapBufferRange(GL_COPY_READ_BUFFER, 0, size, access);
+  if (at != NULL) m->buffer[m->count++] = buffer;
+  m->whole = m->whole && at != NULL;
+  return at;
+}
+
+static void unmap(mapped *m) {
+  for (size_t i = 0; i < m->count; i++) {
+    m->gl->BindBuffer(GL_COPY_READ_BUFFER, m->buffer[i]);
+    m->gl->UnmapBuffer(GL_COPY_READ_BUFFER);
+  }
+}
+
+/* What photon_deposit.comp would be told of the batch. */
+static void tell_batch(const abbe_deposit_pass *pass, size_t light, const abbe_hit_batch *b,
+                       abbe_path_splats *p) {
+  const abbe_photon_spectra *spectra = pass->trace->spectra;
+  const abbe_photon_light *state = &pass->map->views->light[light];
+  const abbe_receiver_tiles *tiles = &pass->trace->atlas->tiles[light];
+  const abbe_plan *plan = spectra->scene->plan;
+  const bool fine = b->set == ABBE_TRACE_REFINED;
+  *p = (abbe_path_splats){
+      .light = light,
+      .refractors = plan->refractor_count,
+      .slots = plan->hit_slots,
+      .stride = pass->trace->hits.stride,
+      .signature_words = abbe_photon_signature_bytes(plan) / sizeof *p->signatures,
+      .tint_count = plan->tints,
+      .interval_texels = plan->tints > 0 ? 3 : 2,
+      .table_first =
+          fine ? plan->light_view_count * plan->refractor_count * (spectra->nodes + 1) : 0,
+      .grid = {(int)state->cells[0], (int)state->cells[1]},
+      .map_size = (int)plan->desc.map_size,
+      .map_levels = (int)pass->map->views->map_levels,
+      .warp_steps = ABBE_WARP_STEPS,
+      .steps = (int)spectra->scene->tables.steps,
+      .sample_first = (int)b->first,
+      .sample_count = (int)(fine ? spectra->nodes : b->count),
+      .interval_first = (int)b->interval_first,
+      .interval_end = (int)b->interval_end,
+      .nodes = (int)(fine ? plan->desc.wavelengths : spectra->nodes),
+      .fine_nodes = fine ? (int)pass->refine->fine_nodes : 0,
+      .unit = (float)abbe_photon_lights_map_unit(pass->map->views, light),
+      .ledger_unit = (float)abbe_photon_ledger_unit(pass->trace->ledger, light),
+      .bridges = plan->fills,
+      .doubts = plan->layers || plan->bvh};
+  abbe_view_pack(&state->map.view, p->view);
+  for (size_t k = 0; k < tiles->count; k++)
+    abbe_receiver_tile_pack(&tiles->tile[k],
+                            spectra->scene->charts.parallelogram[tiles->tile[k].chart_side / 2],
+                            p->tile[k]);
+}
+
+/* And what it would read. Returns how many paths there are. */
+static size_t map_paths(const abbe_deposit_pass *pass, bool fine, mapped *m, abbe_path_splats *p) {
+  const abbe_trace_pass *trace = pass->trace;
+  const abbe_hits *nodes = fine ? &pass->refine->hits : &trace->hits;
+  const size_t tints = fine ? trace->spectra->nodes * p->refractors * ABBE_TINT_TEXELS : 0;
+  const char *photons = map_buffer(m, trace->start->photons, GL_MAP_READ_BIT);
+  p->hits = map_buffer(m, trace->hits.hits, GL_MAP_READ_BIT);
+  p->signatures = map_buffer(m, trace->hits.signatures, GL_MAP_READ_BIT);
+  p->node_hits = p->hits;
+  p->node_signatures = p->signatures;
+  if (fine) {
+    p->node_hits = map_buffer(m, nodes->hits, GL_MAP_READ_BIT);
+    p->node_signatures = map_buffer(m, nodes->signatures, GL_MAP_READ_BIT);
+    p->pairs = map_buffer(m, pass->refine->pairs, GL_MAP_READ_BIT);
+  }
+  p->intervals = map_buffer(m, trace->spectra->intervals, GL_MAP_READ_BIT);
+  p->photon_of_cell = map_buffer(m, trace->start->photon_of_cell, GL_MAP_READ_BIT);
+  p->wants = map_buffer(m, pass->refine->wants, GL_MAP_READ_BIT);
+  p->paths = map_buffer(m, nodes->paths, GL_MAP_READ_BIT);
+  p->warp = map_buffer(m, pass->map->views->warps, GL_MAP_READ_BIT);
+  if (p->tint_count > 0) p->tints = map_buffer(m, trace->spectra->tints, GL_MAP_READ_BIT);
+  if (!m->whole) return 0;
+  p->photons = (const abbe_path_photon *)(const void *)(photons + ABBE_PHOTON_HEADER);
+  p->warp += p->light * ABBE_WARP_STEPS;
+  if (p->tint_count > 0) p->tints += tints;
+  if (fine) p->pairs += ABBE_GPU_LIST_HEADER / sizeof *p->pairs;
+  p->paths += ABBE_GPU_LIST_HEADER / sizeof *p->paths;
+  return p->paths[-(ptrdiff_t)(ABBE_GPU_LIST_HEADER / sizeof *p->paths)];
+}
+
+/* On the processor's own threads, which need no list and no atomics. */
+static abbe_result deposit_here(abbe_deposit_pass *pass, size_t light, const abbe_hit_batch *b,
+                                abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  const abbe_gl *gl = gpu->gl;
   const abbe_photon_lights *views = pass->map->views;
   const abbe_receiver_tiles *tiles = &pass->trace->atlas->tiles[light];
+  const size_t nodes = pass->trace->spectra->nodes;
   abbe_splat_sums sums = {.side = scene_of(pass)->plan->desc.map_size,
                           .texels = views->map_texels,
                           .wide = views->wide,
                           .edges = scene_of(pass)->plan->edges,
                           .tiles = tiles->count > 0 ? tiles : NULL};
-  const size_t list = ABBE_GPU_LIST_HEADER + pass->splat_room * SPLAT_BYTES;
-  const size_t words =
-      sums.texels * (tiles->count > 0 ? 2 : 1) * abbe_photon_lights_map_words(views);
-  gl->BindBuffer(GL_COPY_READ_BUFFER, pass->splats);
-  gl->BindBuffer(GL_COPY_WRITE_BUFFER, pass->map->sums);
-  const uint32_t *splats =
-      gl->MapBufferRange(GL_COPY_READ_BUFFER, 0, (GLsizeiptr)list, GL_MAP_READ_BIT);
-  sums.word = gl->MapBufferRange(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)words * 4,
-                                 GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
-  if (splats != NULL && sums.word != NULL)
-    abbe_splat_sums_add(&sums, splats + ABBE_GPU_LIST_HEADER / sizeof *splats,
-                        splats[0] < pass->splat_room ? splats[0] : pass->splat_room, goes_on, gpu);
-  if (splats != NULL) gl->UnmapBuffer(GL_COPY_READ_BUFFER);
-  if (sums.word != NULL) gl->UnmapBuffer(GL_COPY_WRITE_BUFFER);
-  return abbe_gl_check(gl, "the adding of splats", error);
+  mapped m = {.gl = gpu->gl, .whole = true};
+  abbe_path_splats paths;
+  int coarse_node[PAIR_INTERVALS + 1] = {0};
+  int64_t entry[3] = {0, 0, 0};
+  tell_batch(pass, light, b, &paths);
+  for (size_t k = 0; k < nodes && k <= PAIR_INTERVALS; k++)
+    coarse_node[k] =
+        (int)abbe_spectral_tables_node(scene_of(pass)->plan->desc.wavelengths, nodes, k);
+  paths.coarse_node = coarse_node;
+  sums.word = map_buffer(&m, pass->map->sums, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
+  const abbe_splat_source source = {.list = abbe_path_splats_list,
+                                    .from = &paths,
+                                    .count =
+                                        map_paths(pass, b->set == ABBE_TRACE_REFINED, &m, &paths),
+                                    .most = abbe_path_splats_most(&paths)};
+  abbe_result result = ABBE_OK;
+  if (m.whole) result = abbe_splat_sums_add(&sums, &source, entry, goes_on, gpu, error);
+  unmap(&m);
+  abbe_photon_ledger_enter(pass->trace->ledger, entry);
+  return result == ABBE_OK ? abbe_gl_check(gpu->gl, "the deposit of photons", error) : result;
 }
 
-static abbe_result add_splats(abbe_deposit_pass *pass, size_t light, abbe_error *error) {
+static void add_splats(abbe_deposit_pass *pass, size_t light) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  if (gpu->software) return add_here(pass, light, error);
   gpu->gl->UseProgram(pass->add);
   abbe_gpu_set_int(gpu, pass->add, "light", (int)light);
   abbe_gpu_set_int(gpu, pass->add, "map_size", (int)scene_of(pass)->plan->desc.map_size);
@@ -184,21 +286,25 @@ static abbe_result add_splats(abbe_deposit_pass *pass, size_t light, abbe_error 
   abbe_gpu_set_uint(gpu, pass->add, "map_texels", pass->map->views->map_texels);
   abbe_gpu_bind_storage(gpu, BINDING_MAP_SUMS, pass->map->sums);
   abbe_gpu_dispatch_list(gpu, pass->add, pass->splats, 0, pass->splat_room, 1);
-  return ABBE_OK;
 }
 
 abbe_result abbe_deposit_pass_run(abbe_deposit_pass *pass, size_t light,
                                   const abbe_hit_batch *batch, bool measures, abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
+  const bool fills = scene_of(pass)->plan->fills;
   abbe_result result = ABBE_OK;
+  if (gpu->software) {
+    result = deposit_here(pass, light, batch, error);
+    abbe_gpu_book_lap(gpu, fills ? ABBE_PASS_GAP_FILL : ABBE_PASS_SPECTRAL_MAP);
+    return result;
+  }
   for (size_t chunk = 0; chunk < pass->chunks && result == ABBE_OK; chunk++) {
     if (measures)
       result = list_measured(pass, light, batch, chunk, error);
     else
       list_splats(pass, light, batch, chunk);
-    abbe_gpu_book_lap(gpu,
-                      scene_of(pass)->plan->fills ? ABBE_PASS_GAP_FILL : ABBE_PASS_SPECTRAL_MAP);
-    if (result == ABBE_OK) result = add_splats(pass, light, error);
+    abbe_gpu_book_lap(gpu, fills ? ABBE_PASS_GAP_FILL : ABBE_PASS_SPECTRAL_MAP);
+    if (result == ABBE_OK) add_splats(pass, light);
     abbe_gpu_book_lap(gpu, ABBE_PASS_SPECTRAL_MAP);
   }
   return result;

@@ -12,7 +12,7 @@
 #define MOST_WIDE 0.84f
 enum { MOST_IN_ROWS = 60, MOST_PARTS = 16 };
 
-enum { PARTS = 64, MOST_THREADS = 4, TASK = 1 << 9, BLOCK = 1 << 14 };
+enum { PARTS = 64, MOST_THREADS = 4, TASK = 1 << 8, BLOCK = 1 << 13 };
 
 /* Parts side by side, of one tile or of the map; places in texels of their level. */
 typedef struct batch {
@@ -402,48 +402,74 @@ static void add_splat(batch *b, const uint32_t *word) {
   lay(b, &l);
 }
 
-/* With all that it calls, which rounds and divides faster on newer processors. */
-SIDE_BY_SIDE __attribute__((flatten)) static void
-add_splats(const abbe_splat_sums *sums, uint32_t *word, const uint32_t *splats, size_t count) {
+/* A thread's own: where it adds, and what its items have listed. */
+typedef struct worker {
+  uint32_t *word, *splats;
+  int64_t entry[3];
+} worker;
+
+/* Adds the splats of some items; with all that it calls, which rounds and divides faster on newer
+ * processors. */
+SIDE_BY_SIDE __attribute__((flatten)) static void add_items(const abbe_splat_sums *sums,
+                                                            const abbe_splat_source *source,
+                                                            worker *w, size_t first, size_t end) {
   batch b;
   b.sums = sums;
-  b.word = word;
+  b.word = w->word;
   b.count = 0;
   set_tile(&b, 0);
-  for (size_t i = 0; i < count; i++) add_splat(&b, splats + i * ABBE_SPLAT_WORDS);
+  for (size_t i = first; i < end; i++) {
+    const size_t count = source->list(source->from, i, w->splats, w->entry);
+    for (size_t k = 0; k < count; k++) add_splat(&b, w->splats + k * ABBE_SPLAT_WORDS);
+  }
   flush(&b);
 }
 
-static void merge(const abbe_splat_sums *sums, uint32_t *const *copy, int threads, size_t numbers) {
+static void merge(const abbe_splat_sums *sums, const worker *of, int threads, size_t numbers) {
 #pragma omp parallel for num_threads(threads)
   for (size_t i = 0; i < numbers; i++)
     for (int k = 1; k < threads; k++)
       if (!sums->wide) {
-        copy[0][i] += copy[k][i];
+        of[0].word[i] += of[k].word[i];
       } else {
-        copy[0][2 * i] += copy[k][2 * i];
-        copy[0][2 * i + 1] += copy[k][2 * i + 1] + (copy[0][2 * i] < copy[k][2 * i]);
+        const uint32_t low = of[k].word[2 * i];
+        of[0].word[2 * i] += low;
+        of[0].word[2 * i + 1] += of[k].word[2 * i + 1] + (of[0].word[2 * i] < low);
       }
 }
 
-void abbe_splat_sums_add(const abbe_splat_sums *sums, const uint32_t *splats, size_t count,
-                         bool (*goes_on)(void *user), void *user) {
-  const size_t numbers = 3 * sums->texels * (sums->tiles != NULL ? 2 : 1);
-  uint32_t *copy[MOST_THREADS] = {sums->word};
+abbe_result abbe_splat_sums_add(const abbe_splat_sums *sums, const abbe_splat_source *source,
+                                int64_t entry[3], bool (*goes_on)(void *user), void *user,
+                                abbe_error *error) {
+  const size_t numbers = 3 * sums->texels * (sums->tiles != NULL ? 2 : 1), count = source->count;
+  const size_t list = source->most * ABBE_SPLAT_WORDS;
+  worker of[MOST_THREADS] = {{.word = sums->word, .splats = malloc(list * sizeof *of->splats)}};
   int threads = 1;
+  if (of[0].splats == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path's splats");
   /* Each thread has sums of its own, so none waits for another. */
   while (count >= BLOCK && threads < MOST_THREADS && threads < omp_get_max_threads()) {
-    copy[threads] = calloc(numbers, (sums->wide ? 2 : 1) * sizeof *copy[0]);
-    if (copy[threads] == NULL) break;
+    worker *next = &of[threads];
+    next->word = calloc(numbers, (sums->wide ? 2 : 1) * sizeof *next->word);
+    next->splats = malloc(list * sizeof *next->splats);
+    if (next->word == NULL || next->splats == NULL) {
+      free(next->word);
+      free(next->splats);
+      break;
+    }
     threads++;
   }
   for (size_t at = 0; at < count && (goes_on == NULL || goes_on(user)); at += BLOCK) {
     const size_t end = count - at < BLOCK ? count : at + BLOCK;
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
     for (size_t i = at; i < end; i += TASK)
-      add_splats(sums, copy[omp_get_thread_num()], splats + i * ABBE_SPLAT_WORDS,
-                 end - i < TASK ? end - i : TASK);
+      add_items(sums, source, &of[omp_get_thread_num()], i, end - i < TASK ? end : i + TASK);
   }
-  if (threads > 1) merge(sums, copy, threads, numbers);
-  for (int k = 1; k < threads; k++) free(copy[k]);
+  if (threads > 1) merge(sums, of, threads, numbers);
+  for (int k = 0; k < threads; k++) {
+    for (int i = 0; i < 3; i++) entry[i] += of[k].entry[i];
+    if (k > 0) free(of[k].word);
+    free(of[k].splats);
+  }
+  return ABBE_OK;
 }

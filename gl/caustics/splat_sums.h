@@ -1,10 +1,11 @@
-/* splat_sums.h: adds listed splats to the sums of a map on the processor's own threads, as
- * photon_splat.comp does on the device, where the device is that processor: without atomics and
- * with all vector units full. Internal to gl/.
+/* splat_sums.h: adds splats to the sums of a map on the processor's own threads, as
+ * photon_splat.comp does on the device, where the device is that processor: without atomics, with
+ * all vector units full, and without a list of all of them. Internal to gl/.
  */
 #ifndef ABBE_GL_CAUSTICS_SPLAT_SUMS_H
 #define ABBE_GL_CAUSTICS_SPLAT_SUMS_H
 
+#include "base/error.h"
 #include "gl/scene/receiver_tiles.h"
 
 #include <stdbool.h>
@@ -21,8 +22,18 @@ typedef struct abbe_splat_sums {
   const abbe_receiver_tiles *tiles; /* NULL: no splat lies on one */
 } abbe_splat_sums;
 
-/* goes_on is asked every few milliseconds, and ends it where false; NULL: it goes on. */
-void abbe_splat_sums_add(const abbe_splat_sums *sums, const uint32_t *splats, size_t count,
-                         bool (*goes_on)(void *user), void *user);
+/* Where splats come from: list() writes those of item i, at most `most`, and returns how many; it
+ * adds to `entry` what it is to know of them. */
+typedef struct abbe_splat_source {
+  size_t (*list)(const void *from, size_t i, uint32_t *splats, int64_t entry[3]);
+  const void *from;
+  size_t count, most;
+} abbe_splat_source;
+
+/* entry grows. goes_on is asked every few milliseconds, and ends it where false; NULL: it goes on.
+ * ABBE_NO_MEMORY. */
+abbe_result abbe_splat_sums_add(const abbe_splat_sums *sums, const abbe_splat_source *source,
+                                int64_t entry[3], bool (*goes_on)(void *user), void *user,
+                                abbe_error *error);
 
 #endif

@@ -37,6 +37,7 @@
   X(COLORMASK, ColorMask)                                                                          \
   X(DEPTHRANGE, DepthRange)                                                                        \
   X(FLUSH, Flush)                                                                                  \
+  X(GETBUFFERPARAMETERIV, GetBufferParameteriv)                                                    \
   X(MAPBUFFERRANGE, MapBufferRange)                                                                \
   X(UNMAPBUFFER, UnmapBuffer)                                                                      \
   X(FRONTFACE, FrontFace)                                                                          \

@@ -30,12 +30,13 @@ void abbe_photon_ledger_bind(const abbe_photon_ledger *ledger) {
 }
 
 /* A group of 256 photons sums in 32 bits. */
-static double unit_of(const abbe_photon_ledger *ledger, size_t light) {
+double abbe_photon_ledger_unit(const abbe_photon_ledger *ledger, size_t light) {
   return ldexp(ledger->views->light[light].cell_flux, -22);
 }
 
 void abbe_photon_ledger_set(const abbe_photon_ledger *ledger, GLuint program, size_t light) {
-  abbe_gpu_set_float(ledger->views->scene->gpu, program, "ledger_unit", unit_of(ledger, light));
+  abbe_gpu_set_float(ledger->views->scene->gpu, program, "ledger_unit",
+                     abbe_photon_ledger_unit(ledger, light));
 }
 
 void abbe_photon_ledger_save(const abbe_photon_ledger *ledger) {
@@ -52,6 +53,21 @@ double abbe_photon_ledger_wide(const GLuint *lo_hi) {
   return ldexp((double)(GLint)lo_hi[1], 32) + lo_hi[0];
 }
 
+void abbe_photon_ledger_enter(const abbe_photon_ledger *ledger, const int64_t entry[3]) {
+  static const size_t place[3] = {5, 2, 4}; /* as photon_deposit.comp has them */
+  const abbe_gl *gl = ledger->views->scene->gpu->gl;
+  uint32_t word[WORDS];
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, ledger->sums);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof word, word);
+  for (size_t k = 0; k < 3; k++) {
+    uint32_t *at = word + 2 * place[k];
+    const uint64_t sum = (at[0] | (uint64_t)at[1] << 32) + (uint64_t)entry[k];
+    at[0] = (uint32_t)sum;
+    at[1] = (uint32_t)(sum >> 32);
+  }
+  gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof word, word);
+}
+
 void abbe_photon_ledger_read(const abbe_photon_ledger *ledger, size_t light, abbe_ledger *out) {
   const abbe_gl *gl = ledger->views->scene->gpu->gl;
   GLuint word[WORDS];
@@ -60,5 +76,5 @@ void abbe_photon_ledger_read(const abbe_photon_ledger *ledger, size_t light, abb
   double *const entry[WORDS / 2] = {&out->reached, &out->reflected, &out->absorbed,
                                     &out->trapped, &out->missed,    &out->interpolated};
   for (size_t i = 0; i < WORDS / 2; i++)
-    *entry[i] += abbe_photon_ledger_wide(word + 2 * i) * unit_of(ledger, light);
+    *entry[i] += abbe_photon_ledger_wide(word + 2 * i) * abbe_photon_ledger_unit(ledger, light);
 }

@@ -7,6 +7,8 @@
 #include "gl/device/statistics.h"
 #include "gl/light/photon_lights.h"
 
+#include <stdint.h>
+
 typedef struct abbe_photon_ledger {
   const abbe_photon_lights *views;
   GLuint sums, saved;
@@ -18,8 +20,12 @@ void abbe_photon_ledger_free(abbe_photon_ledger *ledger);
 
 void abbe_photon_ledger_clear(abbe_photon_ledger *ledger);
 void abbe_photon_ledger_bind(const abbe_photon_ledger *ledger);
-/* Sets the unit of the light that is traced now, W, into the program that is in use. */
+/* The unit of the light that is traced now, W; set into the program that is in use. */
+double abbe_photon_ledger_unit(const abbe_photon_ledger *ledger, size_t light);
 void abbe_photon_ledger_set(const abbe_photon_ledger *ledger, GLuint program, size_t light);
+
+/* Adds to what is interpolated, absorbed and missed, in units. Waits for the device. */
+void abbe_photon_ledger_enter(const abbe_photon_ledger *ledger, const int64_t entry[3]);
 
 /* The entries as they are, and back to those. */
 void abbe_photon_ledger_save(const abbe_photon_ledger *ledger);

@@ -47,13 +47,23 @@ static uint32_t list[4 + MOST * WORDS], sums[12 * TEXELS], here[12 * TEXELS];
 static abbe_receiver_tiles tiles = {
     .count = 2, .tile = {{.rect = {0, 64, 32, 96}}, {.rect = {64, 96, 0, 128}}}};
 
+static size_t listed(const void *from, size_t i, uint32_t *splats, int64_t entry[3]) {
+  memcpy(splats, (const uint32_t *)from + i * WORDS, WORDS * sizeof *splats);
+  entry[0]++;
+  return 1;
+}
+
 /* To here what splat_sums.h makes of the list. */
 static void run_here(size_t count, bool edges, bool wide, bool on_tiles) {
   const abbe_splat_sums s = FIELDS(.word = here, .side = SIDE,
                                    .texels = (SIDE * SIDE - (SIDE * SIDE >> 2 * LEVELS)) / 3 * 4,
                                    .wide = wide, .edges = edges, .tiles = on_tiles ? &tiles : NULL);
   memset(here, 0, sizeof here);
-  abbe_splat_sums_add(&s, list + 4, count, NULL, NULL);
+  const abbe_splat_source source =
+      FIELDS(.list = listed, .from = list + 4, .count = count, .most = 1);
+  int64_t entry[3] = {0, 0, 0};
+  OK(abbe_splat_sums_add(&s, &source, entry, NULL, NULL, &error));
+  assert_int_equal(entry[0], count);
 }
 
 /* To sums what the device does. */

@@ -157,3 +157,31 @@ TEST(no_work_is_long) {
   cut_as_whole("mist/prism", true);
   free_context();
 }
+
+/* Of light that the processor's own threads lay for llvmpipe (path_splats.h, splat_sums.h), a GPU's
+ * shaders lay as much in the same texels, but for rounding. */
+TEST(processor_and_device_lay_the_same_light) {
+  static const char *const files[] = {"gem", "glass"};
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    abbe_image picture[2], map[2];
+    for (int k = 0; k < 2; k++) {
+      cut = false;
+      as_gpu = k == 1;
+      make_context();
+      draw(files[i], &picture[k], &map[k]);
+      free_context();
+    }
+    double all = 0, apart = 0;
+    for (size_t k = 0; k < map[0].width * map[0].height * map[0].channels; k++) {
+      all += fabs((double)map[1].data[k]);
+      apart += fabs((double)map[0].data[k] - (double)map[1].data[k]);
+    }
+    print_message("%s: apart by %g of the light\n", files[i], apart / all);
+    assert_true(all > 0);
+    assert_near(apart / all, 0, 3e-5);
+    for (int k = 0; k < 2; k++) {
+      abbe_image_free(&picture[k]);
+      abbe_image_free(&map[k]);
+    }
+  }
+}
