@@ -407,7 +407,7 @@ static void say_gap(const parts *p, size_t from, size_t to, char *out, size_t si
              p->path[p->owner[from - 1] - 1], next);
 }
 
-/* Counts the passes that are there, and says the first that are not. */
+/* Counts the passes that are there, and says the first that are not, and how many are not. */
 static void find_gap(parts *p, char *out, size_t size) {
   size_t from = p->whole, to = p->whole;
   for (size_t i = 0; i < p->whole; i++) {
@@ -415,20 +415,20 @@ static void find_gap(parts *p, char *out, size_t size) {
     if (p->owner[i] == 0 && from == p->whole) from = to = i;
     if (p->owner[i] == 0 && i == to + 1) to = i;
   }
-  out[0] = '\0';
   if (from < p->whole) say_gap(p, from, to, out, size);
+  const size_t said = strlen(out), missing = p->whole - p->passes;
+  if (missing > to - from + 1)
+    snprintf(out + said, size - said, "; in all %zu of %zu are missing", missing, p->whole);
 }
 
 static abbe_result find_parts(const abbe_tracer *t, parts *p, size_t count, abbe_error *error) {
   for (size_t i = 0; i < count; i++) {
     abbe_pass_counts *c = &p->counts[i];
-    abbe_result result = read_head(t, p->path[i], c, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(read_head(t, p->path[i], c, error));
     if (!abbe_pass_counts_hold(c) || c->first == c->end)
       return abbe_error_set(error, ABBE_PARSE, "%s is cut off or holds no pass: trace it anew",
                             p->path[i]);
-    result = own(p, i, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(own(p, i, error));
     if (c->whole > p->whole) {
       p->whole = (size_t)c->whole;
       p->teller = p->path[i];

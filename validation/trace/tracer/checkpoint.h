@@ -25,7 +25,7 @@ abbe_result abbe_checkpoint_load(abbe_tracer *tracer, const char *path, abbe_err
 typedef struct abbe_checkpoint_merging {
   size_t whole;    /* passes, from 0 on; 0: as many as the files state or hold */
   bool incomplete; /* go on where some are missing; then they cannot be gone on with as a part */
-  char lacks[512]; /* out: the first passes that are missing, in a sentence; "": none are */
+  char lacks[512]; /* out: the first passes that are missing, and how many; "": none are */
 } abbe_checkpoint_merging;
 
 /* Puts the passes of all the files together, which may stand in any order: they must begin at pass

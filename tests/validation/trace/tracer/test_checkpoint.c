@@ -389,6 +389,9 @@ TEST(what_was_asked_for_is_missed) {
   save_asked(0, 2, 4, file[0]);
   save_asked(3, 4, 4, file[1]);
   check_unmerged(paths, 2, ABBE_INVALID_ARGUMENT, "pass 2 is missing, between");
+  save_asked(0, 2, 8, file[0]);
+  check_unmerged(paths, 2, ABBE_INVALID_ARGUMENT, "; in all 5 of 8 are missing");
+  save_asked(0, 2, 4, file[0]);
   save_asked(0, 2, 0, file[0]);
   abbe_checkpoint_merging how = {.whole = 3};
   abbe_tracer *tracer = make_tracer(&scene, &small), *other = make_tracer(&scene, &small);
