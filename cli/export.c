@@ -144,6 +144,8 @@ static abbe_result report_pov(const request *q, const abbe_scene *scene, abbe_er
               m->name, g.index.ior, g.index.dispersion, g.worst, g.worst_nm, g.rms);
       if (abbe_material_is_crystal(m))
         fprintf(stderr, "%s: its double refraction is left out\n", m->name);
+      if (abbe_material_is_fluorescent(m))
+        fprintf(stderr, "%s: its fluorescence is left out\n", m->name);
       if (abbe_material_is_pleochroic(m))
         fprintf(stderr, "%s: its absorption is the mean over its axes\n", m->name);
       continue;

@@ -234,9 +234,37 @@ static void show_faces(const abbe_material *m) {
          "               ", p[1].largest);
 }
 
+/* What excites it, where that has points of its own, and what it emits. */
+static void show_fluorescence(const abbe_material *m) {
+  const abbe_fluorescence *f = &m->fluorescence;
+  if (!abbe_material_is_fluorescent(m)) return;
+  const abbe_spectrum *const parts[] = {f->excitation, f->emission};
+  double nm[2][2], most[2] = {0};
+  for (int i = 0; i < 2; i++) {
+    const size_t count = parts[i] != NULL ? abbe_spectrum_count(parts[i]) : 0;
+    double best = -1;
+    for (size_t k = 0; k < count; k++) {
+      const double value = abbe_spectrum_value(parts[i])[k];
+      if (value > best) most[i] = abbe_spectrum_lambda_nm(parts[i])[k];
+      best = value > best ? value : best;
+    }
+    nm[i][0] = count > 0 ? abbe_spectrum_lambda_nm(parts[i])[0] : 0;
+    nm[i][1] = count > 0 ? abbe_spectrum_lambda_nm(parts[i])[count - 1] : nm[0][0];
+  }
+  printf("  fluorescent   yield %.4g photons; emits %.4g to %.4g nm, most at %.4g nm\n", f->yield,
+         nm[1][0], nm[1][1], most[1]);
+  if (f->excitation != NULL)
+    printf("                excited by %.4g to %.4g nm, most by %.4g nm\n", nm[0][0], nm[0][1],
+           most[0]);
+  else
+    printf("                excited by all that it absorbs below %.4g nm\n", nm[1][0]);
+}
+
 void abbe_materials_show_absorption(const abbe_material *m) {
+  show_fluorescence(m);
   if (m->attenuation == NULL) {
-    printf("  absorption    none recorded\n");
+    printf("  absorption    none recorded%s\n",
+           abbe_material_is_fluorescent(m) ? " but what excites it" : "");
     return;
   }
   if (!abbe_material_is_pleochroic(m)) {
@@ -262,7 +290,7 @@ static int loss_axes(const abbe_material *m, int axis[3]) {
   static const int three[3] = {0, 1, 2}, two[3] = {0, 2, 2};
   const bool biaxial = abbe_material_is_biaxial(m);
   memcpy(axis, biaxial ? three : two, sizeof three);
-  if (m->attenuation == NULL) return 0;
+  if (m->attenuation == NULL) return m->fluorescence.excitation != NULL ? 1 : 0;
   return !abbe_material_is_pleochroic(m) ? 1 : biaxial ? 3 : 2;
 }
 
@@ -341,6 +369,12 @@ void abbe_materials_add_absorption(cJSON *to, const abbe_material *m) {
   else
     cJSON_AddNullToObject(to, "attenuation_per_m");
   if (abbe_material_is_pleochroic(m)) add_pleochroism(to, m);
+  if (!abbe_material_is_fluorescent(m)) return;
+  const abbe_fluorescence *f = &m->fluorescence;
+  cJSON *item = cJSON_AddObjectToObject(to, "fluorescence");
+  cJSON_AddNumberToObject(item, "yield", f->yield);
+  add_points(item, "emission", f->emission);
+  if (f->excitation != NULL) add_points(item, "excitation_per_m", f->excitation);
 }
 
 /* ---- three indices ---- */

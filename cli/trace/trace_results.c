@@ -28,6 +28,10 @@ static void add_ledger(cJSON *root, const abbe_light_ledger *l, bool map) {
   cJSON_AddNumberToObject(energy, "scattered", l->scattered);
   cJSON_AddNumberToObject(energy, "turned", l->turned);
   cJSON_AddNumberToObject(energy, "frosted", l->frosted);
+  cJSON_AddNumberToObject(energy, "excited", l->excited);
+  cJSON_AddNumberToObject(energy, "glowing", l->glowing);
+  cJSON_AddNumberToObject(energy, "photons_per_photon",
+                          l->quanta[0] > 0 ? l->quanta[1] / l->quanta[0] : NAN); /* null */
 }
 
 static abbe_result write_stats(const abbe_trace_request *q, const abbe_tracer *tracer,
@@ -132,6 +136,10 @@ void abbe_trace_summarise(const abbe_trace_request *q, const abbe_tracer *tracer
       fprintf(stderr, ", %.2f %% scattered inside and followed on", whole * s.ledger.turned);
     if (s.ledger.frosted > 0)
       fprintf(stderr, ", %.2f %% of it met rough faces", whole * s.ledger.frosted);
+    if (s.ledger.excited > 0)
+      fprintf(stderr, ", %.2f %% taken to glow, and %.2f %% glowing (%.4g photons by photon)",
+              whole * s.ledger.excited, whole * s.ledger.glowing,
+              s.ledger.quanta[1] / s.ledger.quanta[0]);
     if (s.ledger.trapped > 0)
       fprintf(stderr, ", %.2f %% trapped, which is not modelled", whole * s.ledger.trapped);
   }

@@ -49,6 +49,8 @@ static abbe_result add_glass(const survey *s, const abbe_material *m, double lam
     LOST(s, m->name, "its double refraction; the middle index is written");
   if (abbe_material_is_pleochroic(m))
     LOST(s, m->name, "its pleochroism; the mean of its absorption over its axes is written");
+  if (abbe_material_is_fluorescent(m))
+    LOST(s, m->name, "its fluorescence%s", m->attenuation == NULL ? ", and what excites it" : "");
   if (g->index.form == ABBE_EXPORT_FORM_ONE && m->dispersion.model != ABBE_DISPERSION_CONSTANT)
     LOST(s, m->name, "its dispersion: the format takes one index, that of %.7g nm", lambda_nm);
   if (g->index.form == ABBE_EXPORT_FORM_CAUCHY && g->index.value[1] < 0)

@@ -142,6 +142,17 @@ static void write_absorption(const abbe_material *m, FILE *to) {
   }
 }
 
+static void write_fluorescence(const abbe_fluorescence *f, FILE *to) {
+  if (f->yield == 0) return;
+  fputs("    fluorescence:\n", to);
+  write_number("      yield", f->yield, to);
+  fputs("      emission: ", to);
+  write_points(f->emission, NULL, 8, to);
+  if (f->excitation == NULL) return;
+  fputs("      excitation_per_m: ", to);
+  write_points(f->excitation, NULL, 8, to);
+}
+
 static bool any(const double *value, size_t count) {
   for (size_t i = 0; i < count; i++)
     if (value[i] != 0) return true;
@@ -207,6 +218,7 @@ abbe_result abbe_material_write(const abbe_material *material, FILE *to, abbe_er
   write_text("    comment", m->comment, to);
   write_text("    warning", m->warning, to);
   write_absorption(m, to);
+  write_fluorescence(&m->fluorescence, to);
   write_catalogue(&m->catalogue, to);
   write_fits(m, to);
   if (!ferror(to)) return ABBE_OK;

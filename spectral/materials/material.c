@@ -20,6 +20,8 @@ void abbe_material_free(abbe_material *material) {
   for (int i = 0; i < 2; i++) abbe_dispersion_free(&material->outer[i]);
   abbe_spectrum_free(material->attenuation);
   for (int i = 0; i < 2; i++) abbe_spectrum_free(material->attenuation_yz[i]);
+  abbe_spectrum_free(material->fluorescence.excitation);
+  abbe_spectrum_free(material->fluorescence.emission);
   *material = (abbe_material){0};
 }
 
@@ -193,10 +195,53 @@ abbe_result abbe_material_check_absorption(const abbe_material *m, abbe_error *e
                         m->name);
 }
 
+static double first_of(const abbe_spectrum *s) {
+  return abbe_spectrum_lambda_nm(s)[0];
+}
+
+static double last_of(const abbe_spectrum *s) {
+  return abbe_spectrum_lambda_nm(s)[abbe_spectrum_count(s) - 1];
+}
+
+abbe_result abbe_material_check_fluorescence(const abbe_material *m, abbe_error *error) {
+  const abbe_fluorescence *f = &m->fluorescence;
+  if (f->yield == 0 && f->excitation == NULL && f->emission == NULL) return ABBE_OK;
+  if (!(f->yield > 0 && f->yield <= 1))
+    return abbe_error_set(
+        error, ABBE_INVALID_ARGUMENT,
+        "%s: the 'yield' of its fluorescence is %g; a photon that excites it gives "
+        "above 0 and at most 1",
+        m->name, f->yield);
+  if (f->emission == NULL ||
+      !(abbe_spectrum_integral(f->emission, first_of(f->emission), last_of(f->emission)) > 0))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: its fluorescence wants an 'emission', photons by nm at two "
+                          "wavelengths or more, some above 0",
+                          m->name);
+  if (f->excitation == NULL && m->attenuation == NULL)
+    return abbe_error_set(
+        error, ABBE_INVALID_ARGUMENT,
+        "%s: it absorbs nothing that could make it glow: give its fluorescence an "
+        "'excitation_per_m', or the material an 'absorption'",
+        m->name);
+  if (f->excitation != NULL && abbe_material_is_pleochroic(m))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: it absorbs by direction, and all of that excites it: leave "
+                          "'excitation_per_m' out",
+                          m->name);
+  if (f->excitation == NULL || last_of(f->excitation) <= first_of(f->emission)) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "%s: it emits from %g nm and is excited up to %g nm: no photon is emitted "
+                        "at a shorter wavelength than the one that excites; end 'excitation_per_m' "
+                        "where 'emission' begins",
+                        m->name, first_of(f->emission), last_of(f->excitation));
+}
+
 /* What would be of no effect, and could not be written. */
 static abbe_result check_conductor(const abbe_material *m, abbe_error *error) {
   const char *idle = m->extrapolate                               ? "extrapolate"
                      : m->attenuation != NULL                     ? "absorption"
+                     : m->fluorescence.yield != 0                 ? "fluorescence"
                      : m->fit[0].terms > 0 || m->fit[1].terms > 0 ? "fit"
                      : m->published_n_d != 0                      ? "n_d"
                      : m->published_v_d != 0                      ? "v_d"
@@ -221,6 +266,7 @@ abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *
   if (result == ABBE_OK) result = check_extraordinary(material, error);
   if (result == ABBE_OK) result = check_outer(material, error);
   if (result == ABBE_OK) result = abbe_material_check_absorption(material, error);
+  if (result == ABBE_OK) result = abbe_material_check_fluorescence(material, error);
   return result == ABBE_OK ? check_range(material, error) : result;
 }
 
@@ -391,18 +437,46 @@ bool abbe_material_is_pleochroic(const abbe_material *material) {
   return material->attenuation_yz[1] != NULL;
 }
 
+static double excitation_of(const abbe_material *m, double lambda_nm) {
+  const abbe_spectrum *s = m->fluorescence.excitation;
+  return s != NULL && lambda_nm >= first_of(s) && lambda_nm <= last_of(s)
+             ? attenuation_of(s, lambda_nm)
+             : 0;
+}
+
 double abbe_material_attenuation_along(const abbe_material *material, int axis, double lambda_nm) {
   const abbe_spectrum *own = axis > 0 ? material->attenuation_yz[axis - 1] : NULL;
-  return attenuation_of(own != NULL ? own : material->attenuation, lambda_nm);
+  return attenuation_of(own != NULL ? own : material->attenuation, lambda_nm) +
+         excitation_of(material, lambda_nm);
 }
 
 double abbe_material_attenuation(const abbe_material *material, double lambda_nm) {
   if (!abbe_material_is_pleochroic(material))
-    return attenuation_of(material->attenuation, lambda_nm);
+    return abbe_material_attenuation_along(material, 0, lambda_nm);
   double sum = 0;
   for (int axis = 0; axis < 3; axis++)
     sum += abbe_material_attenuation_along(material, axis, lambda_nm);
   return sum / 3;
+}
+
+bool abbe_material_is_fluorescent(const abbe_material *material) {
+  return material->fluorescence.yield > 0;
+}
+
+double abbe_material_excites(const abbe_material *material, double lambda_nm) {
+  const abbe_fluorescence *f = &material->fluorescence;
+  if (!abbe_material_is_fluorescent(material) || lambda_nm >= first_of(f->emission)) return 0;
+  if (f->excitation == NULL) return 1;
+  const double own = excitation_of(material, lambda_nm);
+  return own > 0 ? own / abbe_material_attenuation(material, lambda_nm) : 0;
+}
+
+double abbe_material_emission(const abbe_material *material, double from_nm, double to_nm) {
+  const abbe_spectrum *s = material->fluorescence.emission;
+  if (!abbe_material_is_fluorescent(material)) return 0;
+  const double low = first_of(s), high = last_of(s);
+  const double from = fmin(fmax(from_nm, low), high), to = fmin(fmax(to_nm, from), high);
+  return abbe_spectrum_integral(s, from, to) / abbe_spectrum_integral(s, low, high);
 }
 
 bool abbe_material_is_opaque(const abbe_material *material, double min_nm, double max_nm) {

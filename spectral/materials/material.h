@@ -29,6 +29,17 @@ typedef struct abbe_material_fit {
 
 enum { ABBE_MATERIAL_MAX_NAME = 80 };
 
+/* What it re-radiates of what it absorbs: a re-radiation matrix that is a product of what excites
+ * it and of what it emits [Donaldson1954]. Emission is isotropic, unpolarised and in photons; it
+ * begins where excitation has ended. */
+typedef struct abbe_fluorescence {
+  double yield; /* photons emitted by photon that excites, 0 to 1; 0: it does not glow */
+  abbe_spectrum *excitation; /* 1/m at nm, dark outside its points: absorption of its own, all of
+                                which excites; NULL: all that the material absorbs at shorter
+                                wavelengths than those of the emission does */
+  abbe_spectrum *emission;   /* photons by nm, of any scale, dark outside its points */
+} abbe_fluorescence;
+
 /* What a maker's catalogue says about a glass besides its index. It is carried, not used, but for
  * the density, which weighs stones, and dn/dT. 0 (NULL) means that the catalogue is silent, as it
  * does in the catalogues themselves. */
@@ -65,6 +76,7 @@ typedef struct abbe_material {
                                     pleochroic crystal for a field along x */
   abbe_spectrum *attenuation_yz[2]; /* a pleochroic crystal's, along y (NULL: as along x) and along
                                        z, a uniaxial one's optic axis; else both NULL */
+  abbe_fluorescence fluorescence;
   double
       temperature_c; /* temperature of the measurement, Celsius; NaN where the source is silent */
   bool n_absolute; /* its indices are relative to vacuum; else to air of that temperature and 1 atm,
@@ -103,6 +115,9 @@ abbe_result abbe_material_check(const abbe_material *material, abbe_error *error
 abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *error);
 /* The part of it that is about absorption along axes. */
 abbe_result abbe_material_check_absorption(const abbe_material *material, abbe_error *error);
+/* The part of it that is about fluorescence: a yield of 0 to 1, an emission of some light, none of
+ * it at shorter wavelengths than the excitation, and something that excites. */
+abbe_result abbe_material_check_fluorescence(const abbe_material *material, abbe_error *error);
 /* The part of it that is about the name alone. */
 abbe_result abbe_material_check_name(const char *name, abbe_error *error);
 
@@ -150,13 +165,20 @@ abbe_result abbe_material_nk(const abbe_material *material, double lambda_nm, do
 bool abbe_material_extrapolates(const abbe_material *material, double lambda_nm);
 
 /* Natural attenuation coefficient at lambda_nm, 1/m, >= 0; 0 for a clear material. That of a
- * pleochroic crystal is the mean over its three principal axes. */
+ * pleochroic crystal is the mean over its three principal axes; what excites fluorescence is in it.
+ */
 double abbe_material_attenuation(const abbe_material *material, double lambda_nm);
 
 /* Whether it absorbs by the direction of the light's field. */
 bool abbe_material_is_pleochroic(const abbe_material *material);
 /* The same for a field along principal axis 0, 1 or 2 (x, y, z; the optic axis is z). */
 double abbe_material_attenuation_along(const abbe_material *material, int axis, double lambda_nm);
+
+/* Whether it glows; the share of what it absorbs at lambda_nm that excites it; and the share of the
+ * photons that it emits from one wavelength to another, ascending. */
+bool abbe_material_is_fluorescent(const abbe_material *material);
+double abbe_material_excites(const abbe_material *material, double lambda_nm);
+double abbe_material_emission(const abbe_material *material, double from_nm, double to_nm);
 
 /* Whether it absorbs within a wavelength (down to 1/e: k above 0.08) in most of the range, as
  * metals do, in which light does not get on. A conductor does. */

@@ -156,6 +156,33 @@ static abbe_result read_absorption(abbe_record_reading *r) {
   return read_absorbed(r, where, &r->material->attenuation);
 }
 
+/* ---- fluorescence ---- */
+
+static abbe_result read_fluorescence(abbe_record_reading *r) {
+  const abbe_yaml_node where = abbe_yaml_get(r->yaml, r->record, "fluorescence");
+  abbe_fluorescence *f = &r->material->fluorescence;
+  abbe_error why;
+  if (where.id == 0) return ABBE_OK;
+  if (!abbe_yaml_is_mapping(r->yaml, where))
+    return abbe_yaml_fail(r->yaml, where, r->error,
+                          "'fluorescence' wants 'yield' and 'emission', and may have "
+                          "'excitation_per_m'");
+  const abbe_yaml_node emission = abbe_yaml_get(r->yaml, where, "emission"),
+                       excitation = abbe_yaml_get(r->yaml, where, "excitation_per_m");
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, where, "yield", 0, 1, &f->yield, r->error));
+  ABBE_TRY(abbe_yaml_check_keys(r->yaml, where, "'fluorescence'", r->error));
+  if (emission.id != 0)
+    ABBE_TRY(abbe_record_read_points(r, emission, "emission", 0, 1e15, ABBE_INTERPOLATION_LINEAR,
+                                     &f->emission));
+  if (excitation.id != 0)
+    ABBE_TRY(abbe_record_read_points(r, excitation, "excitation_per_m", 0, 1e15,
+                                     ABBE_INTERPOLATION_LINEAR, &f->excitation));
+  if (f->emission != NULL && abbe_material_check_fluorescence(r->material, &why) == ABBE_OK)
+    return ABBE_OK;
+  return abbe_yaml_fail(r->yaml, where, r->error, "%s",
+                        f->emission != NULL ? why.text : "'fluorescence' wants an 'emission'");
+}
+
 /* ---- fits ---- */
 
 static abbe_result read_fit(abbe_record_reading *r, abbe_yaml_node fits, const char *key,
@@ -258,7 +285,7 @@ static abbe_result check_record_keys(abbe_record_reading *r) {
       "name",          "description", "model",      "coefficients",  "points",    "interpolation",
       "range_nm",      "extrapolate", "absorption", "temperature_c", "source",    "warning",
       "fit",           "n_d",         "v_d",        "comment",       "catalogue", "density_g_cm3",
-      "extraordinary", "biaxial",     "n_absolute"};
+      "extraordinary", "biaxial",     "n_absolute", "fluorescence"};
   for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
     abbe_yaml_get(r->yaml, r->record, keys[i]);
   return abbe_yaml_check_keys(r->yaml, r->record, "a material", r->error);
@@ -276,6 +303,7 @@ static abbe_result read_record(abbe_record_reading *r) {
                                 &m->temperature_c, r->error));
   ABBE_TRY(abbe_yaml_get_bool(r->yaml, r->record, "n_absolute", &m->n_absolute, r->error));
   ABBE_TRY(read_absorption(r));
+  ABBE_TRY(read_fluorescence(r));
   ABBE_TRY(read_published(r));
   ABBE_TRY(read_density(r));
   ABBE_TRY(read_catalogue(r));

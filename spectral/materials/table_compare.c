@@ -88,6 +88,10 @@ static unsigned parts_of(const abbe_material *a, const abbe_material *b) {
       [ABBE_ROW_PART_ABSORPTION] = same_points(a->attenuation, b->attenuation) &&
                                    same_points(a->attenuation_yz[0], b->attenuation_yz[0]) &&
                                    same_points(a->attenuation_yz[1], b->attenuation_yz[1]),
+      [ABBE_ROW_PART_FLUORESCENCE] =
+          a->fluorescence.yield == b->fluorescence.yield &&
+          same_points(a->fluorescence.excitation, b->fluorescence.excitation) &&
+          same_points(a->fluorescence.emission, b->fluorescence.emission),
       [ABBE_ROW_PART_CATALOGUE] = same_catalogue(&a->catalogue, &b->catalogue),
       [ABBE_ROW_PART_FIT] = same_fits(a, b),
   };

@@ -37,6 +37,7 @@ typedef enum abbe_row_kind {
   X(WARNING, "warning")                                                                            \
   X(COMMENT, "comment")                                                                            \
   X(ABSORPTION, "absorption")                                                                      \
+  X(FLUORESCENCE, "fluorescence")                                                                  \
   X(CATALOGUE, "catalogue")                                                                        \
   X(FIT, "fit")
 

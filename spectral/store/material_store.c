@@ -306,6 +306,16 @@ static abbe_result read_row(reader *r) {
   if (result == ABBE_OK)
     result = read_spectrum(r, ABBE_STORE_attenuation_z_per_m,
                            ABBE_STORE_attenuation_z_interpolation, 0, 1e15, &m->attenuation_yz[1]);
+  if (result == ABBE_OK)
+    result = read_number(r, ABBE_STORE_fluorescence_yield, 0, 1, &m->fluorescence.yield);
+  if (result == ABBE_OK)
+    result =
+        read_spectrum(r, ABBE_STORE_fluorescence_emission, ABBE_STORE_fluorescence_interpolation, 0,
+                      1e15, &m->fluorescence.emission);
+  if (result == ABBE_OK)
+    result =
+        read_spectrum(r, ABBE_STORE_fluorescence_excitation_per_m,
+                      ABBE_STORE_fluorescence_interpolation, 0, 1e15, &m->fluorescence.excitation);
   if (result == ABBE_OK) result = read_catalogue(r);
   if (result != ABBE_OK) return result;
   /* only rows that are used are checked; thousands that are looked through would take as long

@@ -9,7 +9,7 @@
 #include <sqlite3.h>
 
 /* "Abbe" in the file's header, and the version of what follows. */
-enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 4, ABBE_STORE_MAX_TERMS = 3 };
+enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 5, ABBE_STORE_MAX_TERMS = 3 };
 
 /* X(name, type): the columns after id. Lists of numbers are doubles, the least byte first; points
  * are pairs of them, nm and value, or nm, n and k of a conductor. What is large comes last: SQLite
@@ -56,6 +56,10 @@ enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 4, ABBE_STORE_M
   X(attenuation_y_per_m, "BLOB")                                                                   \
   X(attenuation_z_interpolation, "TEXT")                                                           \
   X(attenuation_z_per_m, "BLOB") /* the other is along x */                                        \
+  X(fluorescence_yield, "REAL")                                                                    \
+  X(fluorescence_interpolation, "TEXT") /* of both that follow */                                  \
+  X(fluorescence_emission, "BLOB")                                                                 \
+  X(fluorescence_excitation_per_m, "BLOB")                                                         \
   X(alpha_points, "BLOB")                                                                          \
   X(gamma_points, "BLOB")                                                                          \
   X(extraordinary_points, "BLOB")                                                                  \

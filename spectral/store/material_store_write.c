@@ -165,6 +165,14 @@ static int bind_material(sqlite3_stmt *q, const abbe_material *m) {
   if (code == SQLITE_OK)
     code = bind_spectrum(q, ABBE_STORE_attenuation_z_per_m, ABBE_STORE_attenuation_z_interpolation,
                          m->attenuation_yz[1]);
+  if (code == SQLITE_OK)
+    code = bind_number(q, ABBE_STORE_fluorescence_yield, m->fluorescence.yield);
+  if (code == SQLITE_OK)
+    code = bind_spectrum(q, ABBE_STORE_fluorescence_emission, ABBE_STORE_fluorescence_interpolation,
+                         m->fluorescence.emission);
+  if (code == SQLITE_OK)
+    code = bind_spectrum(q, ABBE_STORE_fluorescence_excitation_per_m,
+                         ABBE_STORE_fluorescence_interpolation, m->fluorescence.excitation);
   return code == SQLITE_OK ? bind_catalogue(q, &m->catalogue) : code;
 }
 

@@ -201,6 +201,20 @@ static void note_pleochroism(const abbe_material *material, abbe_plan *plan) {
                  material->name, MM, o[0], o[1], o[2], e[0], e[1], e[2], p.largest);
 }
 
+/* What glows is drawn without. */
+static void note_fluorescence(const abbe_material *m, double low, double high, abbe_plan *plan) {
+  const abbe_fluorescence *f = &m->fluorescence;
+  if (!abbe_material_is_fluorescent(m)) return;
+  const size_t last = abbe_spectrum_count(f->emission) - 1;
+  const double *nm = abbe_spectrum_lambda_nm(f->emission);
+  abbe_plan_note(
+      plan,
+      "%s: fluorescent; of photons that excite it %.3g %% come back at %.4g to %.4g nm, "
+      "%.3g %% of these within the range; it is drawn without its glow, and 'abbe trace' "
+      "has it",
+      m->name, 100 * f->yield, nm[0], nm[last], 100 * abbe_material_emission(m, low, high));
+}
+
 /* The first object of the material, of those that the plan does not have yet. */
 static void note_object(const abbe_scene *scene, const abbe_material *material, abbe_plan *plan) {
   const double low = plan->desc.min_nm, high = plan->desc.max_nm;
@@ -230,6 +244,7 @@ abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_mate
   if (!noted) note_birefringence(material, 0.5 * (min + max), plan);
   if (!noted) note_double_image(material, 0.5 * (min + max), plan);
   if (!noted) note_pleochroism(material, plan);
+  if (!noted) note_fluorescence(material, min, max, plan);
   note_object(scene, material, plan);
   if (outside && !noted)
     abbe_plan_note(plan, "%s: the index is extrapolated outside its valid range, %g to %g nm",

@@ -201,6 +201,7 @@ static bool find_index(const abbe_object *o, double lambda_nm, double *n) {
   *n = 1;
   if (o->mirror) return o->conductor == NULL;
   return o->material != NULL && o->material->attenuation == NULL &&
+         !abbe_material_is_fluorescent(o->material) &&
          abbe_material_n(o->material, lambda_nm, n, NULL) == ABBE_OK;
 }
 

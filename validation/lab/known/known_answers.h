@@ -31,6 +31,7 @@
   X(crystal, "calcite: the angle between its rays, their indices, shares and doubled image")       \
   X(rainbow, "primary and secondary rainbows of water")                                            \
   X(rough, "rough faces of glass: what their first facet reflects and passes, and smooth ones")    \
+  X(fluorescent, "what glows: photons by photon, slabs thin and thick from both sides, a ball")    \
   X(pane, "what slabs, of calcite too, reflect and pass with all inner reflections")               \
   X(polarised, "polarised light: sheets, piles of plates, metals, tourmaline, a furnace")          \
   X(absorption, "Beer-Lambert: what absorbing slabs let pass")                                     \

@@ -106,10 +106,19 @@ static abbe_result value_so_far(const abbe_tracer *tracer, const abbe_known_sett
                                 double *value, abbe_error *error) {
   abbe_trace_statistics statistics;
   abbe_tracer_statistics(tracer, &statistics);
-  *value = statistics.ledger.reached;
+  const abbe_light_ledger *l = &statistics.ledger;
+  *value = l->reached;
   if (s->channel == NULL) return ABBE_OK;
-  if (strcmp(s->channel, "turned") == 0) {
-    *value = statistics.ledger.turned / statistics.ledger.reached;
+  const struct {
+    const char *channel;
+    double value;
+  } ledger[] = {{"turned", l->turned / l->reached},
+                {"yield", l->quanta[1] / l->quanta[0]},
+                {"closed", (l->deposited + l->absorbed + l->missed + l->lost + l->excited) /
+                               (l->reached + l->glowing)}};
+  for (int i = 0; i < 3; i++) {
+    if (strcmp(s->channel, ledger[i].channel) != 0) continue;
+    *value = ledger[i].value;
     return ABBE_OK;
   }
   abbe_image picture = {0};
@@ -148,6 +157,8 @@ abbe_result abbe_known_add_setting(abbe_known_run *run, const abbe_known_setting
   abbe_trace_desc desc = {
       .no_map = true, .space = ABBE_RGB_SPACE_XYZ, .width = setting->side, .height = setting->side};
   desc.physics.once = setting->once;
+  desc.min_nm = setting->min_nm;
+  desc.max_nm = setting->max_nm;
   if (setting->lambda_nm > 0) abbe_known_narrow(setting->lambda_nm, &desc);
   if (setting->polarised) desc.polarisation = ABBE_TRACE_POLARISATION_ON;
   const size_t passes = abbe_known_passes(run, setting->samples, &desc);

@@ -39,12 +39,15 @@ typedef struct abbe_known_setting {
   double slack;  /* that the value may be off beside noise */
   double useful; /* as in abbe_known_answer */
   uint64_t samples;
-  double lambda_nm;    /* narrow around it; 0: the whole range */
-  bool polarised;      /* paths carry the light's polarisation also without polarisers */
-  size_t side;         /* pixels of the picture */
-  bool once;           /* a medium scatters light once (physics.h) */
-  const char *channel; /* whose mean over the picture is known; NULL: the flux that was met, W;
-                          "turned": the share of it that refractors' haze has scattered */
+  double lambda_nm;      /* narrow around it; 0: the whole range */
+  double min_nm, max_nm; /* the range; 0, 0: the usual one */
+  bool polarised;        /* paths carry the light's polarisation also without polarisers */
+  size_t side;           /* pixels of the picture */
+  bool once;             /* a medium scatters light once (physics.h) */
+  const char *channel;   /* whose mean over the picture is known; NULL: the flux that was met, W;
+                            "turned": the share of it that refractors' haze has scattered; "yield":
+                            photons emitted by photon taken; "closed": what came out of all that came
+                            in and glowed */
   double (*weight)(double x, double y); /* weight of a pixel whose middle lies there, the picture
                                            reaching from -1 to 1 both ways, y up; NULL: 1 */
 } abbe_known_setting;

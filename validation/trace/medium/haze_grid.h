@@ -22,6 +22,7 @@
 typedef struct abbe_haze_photon {
   float p[3], d[3]; /* frame; the way that it came, unit */
   float flux;       /* W, of what is scattered */
+  float glow;       /* W, of what is absorbed there to glow */
   uint32_t colour;  /* light * steps + step */
   int32_t medium;   /* refractor, or -1: the air */
 } abbe_haze_photon;

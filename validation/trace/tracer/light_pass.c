@@ -63,9 +63,14 @@ typedef struct sink {
   size_t thread, light;
 } sink;
 
+/* The number of a step of the light's, or of its glow's, colours. */
+static size_t colour_of(const abbe_tracer *t, size_t light, bool glows, uint32_t step) {
+  return (light + (glows ? t->sampling.lights : 0)) * t->sampling.steps + step;
+}
+
 static void add_to_texel(abbe_tracer *t, size_t thread, size_t light, const abbe_photon_hit *l,
                          size_t texel) {
-  const size_t at = texel * t->map_channels, step = light * t->sampling.steps + l->step;
+  const size_t at = texel * t->map_channels, step = colour_of(t, light, l->glows, l->step);
   const float *xyz = t->sampling.xyz[step];
   for (size_t k = 0; k < 3; k++) abbe_accumulator_add(&t->map, thread, at + k, l->flux * xyz[k]);
   if (t->bands.count > 0)
@@ -140,9 +145,9 @@ static bool prepare_splat(const abbe_tracer *t, const abbe_photon_hit *l, struct
   return true;
 }
 
-static void add_to_pixel(const sink *s, size_t pixel, uint32_t step, float value, bool caustic) {
+static void add_to_pixel(const sink *s, size_t pixel, size_t colour, float value, bool caustic) {
   abbe_tracer *t = s->t;
-  size_t colour = s->light * t->sampling.steps + step, at = pixel * t->picture_channels;
+  const size_t at = pixel * t->picture_channels;
   float rgb[3], seen[3];
   for (size_t k = 0; k < 3; k++) rgb[k] = value * t->colour[colour][k];
   abbe_tracer_finish(t, rgb, seen);
@@ -152,7 +157,7 @@ static void add_to_pixel(const sink *s, size_t pixel, uint32_t step, float value
       abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_CAUSTIC + k, seen[k]);
   }
   if (t->bands.count == 0) return;
-  size_t band = t->bands.of_step[step];
+  size_t band = t->bands.of_step[colour % t->sampling.steps];
   abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_BANDS + band,
                        t->passes * value * t->sampling.power[colour] / (float)t->bands.width_nm);
 }
@@ -175,11 +180,13 @@ static void add_splat(const sink *s, const splat *p) {
     left = abbe_haze_left(&t->media.haze, abbe_media_of(t->eye.inside), o, d, 0, sqrtf(square),
                           l->step, 0.5f);
   }
-  add_to_pixel(s, p->pixel, l->step, p->value * 0.318309886f * kept * left, true);
+  add_to_pixel(s, p->pixel, colour_of(t, s->light, l->glows, l->step),
+               p->value * 0.318309886f * kept * left, true);
 }
 
 static void add_shaft(void *user, const abbe_shaft_splat *p) {
-  add_to_pixel(user, p->pixel, p->step, p->value, false);
+  const sink *s = user;
+  add_to_pixel(s, p->pixel, colour_of(s->t, s->light, p->glows, p->step), p->value, false);
 }
 
 static uint64_t flush_splats(const sink *s, struct RTCRay16 *packet, const splat *splats,
@@ -236,7 +243,8 @@ static abbe_shaft_photons *watch_shafts(const abbe_emission *e, sink *s) {
   shafts->near = t->eye.shaft_near;
   shafts->pass = e->pass;
   shafts->seed = t->desc.seed;
-  shafts->colour = (uint32_t)(e->light * t->sampling.steps);
+  shafts->colour = (uint32_t)colour_of(t, e->light, false, 0);
+  shafts->glow = (uint32_t)colour_of(t, e->light, true, 0);
   shafts->add = add_shaft;
   shafts->user = s;
   abbe_light_walk_watch(t->walk[s->thread], abbe_shaft_photons_take, shafts);
@@ -264,7 +272,7 @@ static void run_task(const abbe_emission *e, uint32_t from, uint32_t to, const v
       abbe_grid_photon *g = &keep[out->kept++];
       *g = (abbe_grid_photon){.flux = l->side * l->flux,
                               .surface = l->surface,
-                              .colour = (uint32_t)(e->light * t->sampling.steps) + l->step};
+                              .colour = (uint32_t)colour_of(t, e->light, l->glows, l->step)};
       memcpy(g->p, l->p, sizeof g->p);
     }
   }
@@ -308,6 +316,9 @@ static void add_ledger(abbe_light_ledger *to, const abbe_light_ledger *from) {
   to->scattered += from->scattered;
   to->turned += from->turned;
   to->frosted += from->frosted;
+  to->excited += from->excited;
+  to->glowing += from->glowing;
+  for (int i = 0; i < 2; i++) to->quanta[i] += from->quanta[i];
 }
 
 /* The tasks of one light; results are joined in the order of the tasks, whoever did them. */

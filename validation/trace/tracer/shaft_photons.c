@@ -1,5 +1,6 @@
 #include "validation/trace/tracer/shaft_photons.h"
 
+#include "validation/trace/medium/glow.h"
 #include "validation/trace/transport/random.h"
 
 #include <stdlib.h>
@@ -49,7 +50,7 @@ static void splat(abbe_shaft_photons *s, const abbe_light_stretch *from, const f
       (metres * metres) *
       abbe_haze_left(&s->media->haze, from->medium, p, d, 0, distance, from->step, from->within);
   if (!(value > 0)) return;
-  s->splat[s->waiting] = (abbe_shaft_splat){pixel, from->step, value};
+  s->splat[s->waiting] = (abbe_shaft_splat){pixel, from->step, from->glows, value};
   aim_at_eye(s, p, d, distance);
   if (s->waiting == ABBE_SHAFT_LANES) abbe_shaft_photons_flush(s);
 }
@@ -57,7 +58,7 @@ static void splat(abbe_shaft_photons *s, const abbe_light_stretch *from, const f
 /* ---- to gathers ---- */
 
 static void keep(abbe_shaft_photons *s, const abbe_light_stretch *from, const float p[3],
-                 float flux) {
+                 float flux, float glow) {
   if (s->count == s->room) {
     const size_t room = s->room > 0 ? 2 * s->room : 4096;
     abbe_haze_photon *all = realloc(s->photon, room * sizeof *all);
@@ -67,8 +68,10 @@ static void keep(abbe_shaft_photons *s, const abbe_light_stretch *from, const fl
     s->room = room;
   }
   abbe_haze_photon *to = &s->photon[s->count++];
-  *to = (abbe_haze_photon){
-      .flux = flux, .colour = s->colour + from->step, .medium = (int32_t)from->medium};
+  *to = (abbe_haze_photon){.flux = flux,
+                           .glow = glow,
+                           .colour = (from->glows ? s->glow : s->colour) + from->step,
+                           .medium = (int32_t)from->medium};
   memcpy(to->p, p, sizeof to->p);
   memcpy(to->d, from->d, sizeof to->d);
 }
@@ -77,20 +80,23 @@ void abbe_shaft_photons_take(void *user, const abbe_light_stretch *from) {
   abbe_shaft_photons *s = user;
   const abbe_haze *h = &s->media->haze;
   float near = 0, far = from->length, random[4], density, p[3];
-  if (abbe_haze_turns(h, from->medium) && (s->found || from->known)) return;
-  if (!abbe_haze_scatters(h, from->medium) ||
+  const bool glows = abbe_haze_glows(h, from->medium);
+  if ((glows || abbe_haze_turns(h, from->medium)) && (s->found || from->known)) return;
+  if ((!glows && !abbe_haze_scatters(h, from->medium)) ||
       !abbe_haze_clip(h, from->medium, from->o, from->d, &near, &far) || !(far < INFINITY))
     return;
   const float extinction =
       abbe_media_extinction(s->media, from->medium, from->step, from->within, from->d, from->wave);
   abbe_random4(from->id, from->steps, s->pass, s->seed ^ 0x73686674u, random);
   const float t = abbe_haze_place(extinction, far - near, random[0], &density);
-  const float flux = from->flux * expf(-t * extinction) / density *
-                     abbe_haze_scattering(h, from->medium, from->step, from->within);
-  if (!(flux > 0)) return;
+  const float there = from->flux * expf(-t * extinction) / density;
+  const float flux = there * abbe_haze_scattering(h, from->medium, from->step, from->within);
+  const float glow =
+      there * abbe_glow_rate(s->media, from->medium, from->step, from->within, from->d, from->wave);
+  if (!(flux > 0 || glow > 0)) return;
   for (int k = 0; k < 3; k++) p[k] = from->o[k] + (near + t) * from->d[k];
   splat(s, from, p, flux);
-  keep(s, from, p, flux);
+  keep(s, from, p, flux, glow);
 }
 
 void abbe_shaft_photons_free(abbe_shaft_photons *s) {

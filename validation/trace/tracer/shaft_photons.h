@@ -26,6 +26,7 @@ enum { ABBE_SHAFT_LANES = 16 };
 typedef struct abbe_shaft_splat {
   size_t pixel;
   uint32_t step;
+  bool glows;  /* it is of the glow of something */
   float value; /* radiance that the pixel's mean gains */
 } abbe_shaft_splat;
 
@@ -37,8 +38,8 @@ typedef struct abbe_shaft_photons {
   int eye_medium; /* refractor that the camera is in, or -1 */
   float near;     /* frame: no nearer to the camera are places splatted */
   uint32_t pass, seed;
-  uint32_t colour; /* colour of the light's first step */
-  bool found;      /* paths of the camera meet the light by themselves: it has a size */
+  uint32_t colour, glow; /* colour of the light's first step, and of its glow's */
+  bool found;            /* paths of the camera meet the light by themselves: it has a size */
   void (*add)(void *user, const abbe_shaft_splat *splat);
   void *user;
   struct RTCRay16 packet; /* to the camera, of splats that wait */

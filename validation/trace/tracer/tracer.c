@@ -106,10 +106,13 @@ static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
   abbe_result result = abbe_geometry_make(t->scene, &t->geometry, error);
   if (result == ABBE_OK)
     result = abbe_spectral_sampling_make(t->scene, &spectrum, &t->sampling, error);
+  if (result == ABBE_OK) t->brightest = abbe_spectral_sampling_brightest(&t->sampling);
   if (result == ABBE_OK)
     result =
         abbe_media_make(&t->geometry, t->sampling.lambda_nm, t->sampling.steps, &t->media, error);
   if (d->physics.matched) abbe_media_forget_axes(&t->media);
+  if (result == ABBE_OK && !d->physics.matched)
+    result = abbe_glow_make(&t->geometry, &t->sampling, &t->media, &t->glow, error);
   t->media.haze.once = d->physics.matched || d->physics.once;
   if (result == ABBE_OK && !t->media.haze.once)
     result = abbe_haze_check(&t->media.haze, &t->geometry, error);
@@ -127,7 +130,7 @@ static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
                                    t->mixing, &t->reflectance, error);
   if (result != ABBE_OK) return result;
   size_t lights = t->sampling.lights;
-  t->colour = calloc(lights * t->sampling.steps, sizeof *t->colour);
+  t->colour = calloc(t->sampling.rows * t->sampling.steps, sizeof *t->colour);
   t->white = calloc(lights, sizeof *t->white);
   t->projection = calloc(lights, sizeof *t->projection);
   t->photons = calloc(lights, sizeof *t->photons);
@@ -187,7 +190,7 @@ static abbe_result make_sums(abbe_tracer *t, abbe_error *error) {
     t->map_channels = 3 + t->bands.count;
     double reach = t->projection[d->map_light].reach;
     result = abbe_accumulator_make(d->map_width * d->map_height * t->map_channels, d->threads,
-                                   (reach > 0 ? reach : 1) * 0x1p14, &t->map, error);
+                                   (reach > 0 ? reach : 1) * t->brightest * 0x1p14, &t->map, error);
   }
   return result;
 }
@@ -329,6 +332,7 @@ void abbe_tracer_free(abbe_tracer *t) {
   abbe_reflectance_free(&t->reflectance);
   abbe_environment_light_free(&t->environment);
   abbe_media_free(&t->media);
+  abbe_glow_free(&t->glow);
   abbe_mirrors_free(&t->mirrors);
   abbe_spectral_sampling_free(&t->sampling);
   abbe_geometry_free(&t->geometry);

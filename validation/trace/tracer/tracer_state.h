@@ -5,6 +5,7 @@
 #ifndef ABBE_VALIDATION_TRACE_TRACER_TRACER_STATE_H
 #define ABBE_VALIDATION_TRACE_TRACER_TRACER_STATE_H
 
+#include "validation/trace/medium/glow.h"
 #include "validation/trace/tracer/accumulator.h"
 #include "validation/trace/tracer/tracer.h"
 #include "validation/trace/walks/eye_walk.h"
@@ -66,7 +67,9 @@ struct abbe_tracer {
   float passes;      /* what the camera's polariser passes of unpolarised light; 1: there is none */
   abbe_geometry geometry;
   abbe_spectral_sampling sampling;
+  double brightest; /* Y of a watt, at the most */
   abbe_media media;
+  abbe_glow glow;
   abbe_mirrors mirrors;
   abbe_bands bands;
   abbe_reflectance reflectance;
@@ -128,7 +131,7 @@ static inline void abbe_tracer_finish(const abbe_tracer *t, const float mixed[3]
 }
 /* The unit of the ledger's sums, W. */
 static inline double abbe_tracer_ledger_unit(const abbe_tracer *t) {
-  return (t->reach > 0 ? t->reach : 1) * 0x1p-50;
+  return (t->reach > 0 ? t->reach : 1) * t->brightest * 0x1p-50;
 }
 /* The light of that number; NULL: the environment. */
 static inline const abbe_light *abbe_tracer_light(const abbe_tracer *t, size_t light) {

@@ -32,9 +32,9 @@ static bool fill_row(const abbe_geometry *g, const double *lambda_nm, const floa
 }
 
 abbe_result abbe_haze_make(const abbe_geometry *g, const double *lambda_nm, size_t steps,
-                           const float *attenuation, abbe_haze *out, abbe_error *error) {
+                           const float *attenuation, bool all, abbe_haze *out, abbe_error *error) {
   *out = (abbe_haze){0};
-  if (!abbe_scene_is_hazy(g->scene)) return ABBE_OK;
+  if (!all && !abbe_scene_is_hazy(g->scene)) return ABBE_OK;
   const size_t rows = g->refractor_count + 1, values = rows * (steps + 1);
   abbe_haze h = {.refractors = g->refractor_count, .steps = steps};
   h.scattering = calloc(values, sizeof *h.scattering);
@@ -42,11 +42,12 @@ abbe_result abbe_haze_make(const abbe_geometry *g, const double *lambda_nm, size
   h.scatters = calloc(rows, sizeof *h.scatters);
   h.coloured = calloc(rows, sizeof *h.coloured);
   h.g = calloc(rows, sizeof *h.g);
-  if (!h.scattering || !h.extinction || !h.scatters || !h.coloured || !h.g) {
+  h.glows = calloc(rows, sizeof *h.glows);
+  if (!h.scattering || !h.extinction || !h.scatters || !h.coloured || !h.g || !h.glows) {
     abbe_haze_free(&h);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for tables of %zu media", rows);
   }
-  bool hazy = false;
+  bool hazy = all;
   for (size_t row = 0; row < rows; row++) {
     const bool some = fill_row(g, lambda_nm, attenuation, row, &h);
     hazy = hazy || some;
@@ -68,6 +69,7 @@ void abbe_haze_free(abbe_haze *h) {
   free(h->scatters);
   free(h->coloured);
   free(h->g);
+  free(h->glows);
   *h = (abbe_haze){0};
 }
 

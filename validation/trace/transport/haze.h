@@ -1,5 +1,5 @@
-/* haze.h: media that scatter, in the tracer: what a way through them leaves of light and how it is
- * turned.
+/* haze.h: media that scatter or glow, in the tracer: what a way through them leaves of light and
+ * how it is turned.
  *
  * Tables over the sampler's wavelengths in frame units, a row a refractor and the air's last.
  * What becomes of scattered light is the walks' business. Its oracle is scenes/medium/medium.h.
@@ -17,6 +17,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+struct abbe_glow;
+
 /* Zeroed: nothing scatters, and the air is clear. */
 typedef struct abbe_haze {
   size_t refractors, steps;
@@ -25,14 +27,17 @@ typedef struct abbe_haze {
   bool *scatters;    /* [refractors + 1] at some wavelength */
   bool *coloured;    /* [refractors + 1] its extinction or scattering varies */
   float *g;          /* [refractors + 1] */
-  bool once;         /* refractors scatter light once; else as often as it comes */
-  bool air;          /* the air has a region: */
+  bool *glows;       /* [refractors + 1] it is fluorescent, and its paths are followed on, by: */
+  const struct abbe_glow *glow; /* NULL: none is (medium/glow.h) */
+  bool once;                    /* refractors scatter light once; else as often as it comes */
+  bool air;                     /* the air has a region: */
   float low[3], high[3];
 } abbe_haze;
 
-/* attenuation: of refractors, [refractors][steps + 1], frame units, or NULL. ABBE_NO_MEMORY. */
+/* attenuation: of refractors, [refractors][steps + 1], frame units, or NULL. all: also where
+ * nothing scatters. ABBE_NO_MEMORY. */
 abbe_result abbe_haze_make(const abbe_geometry *geometry, const double *lambda_nm, size_t steps,
-                           const float *attenuation, abbe_haze *out, abbe_error *error);
+                           const float *attenuation, bool all, abbe_haze *out, abbe_error *error);
 void abbe_haze_free(abbe_haze *haze);
 
 /* Refuses by name a refractor in which paths would be scattered too often to be followed.
@@ -54,6 +59,10 @@ static inline bool abbe_haze_scatters(const abbe_haze *h, int i) {
 /* Whether it scatters light as often as it comes. */
 static inline bool abbe_haze_turns(const abbe_haze *h, int i) {
   return i >= 0 && abbe_haze_scatters(h, i) && !h->once;
+}
+/* Whether light that it absorbs comes back at other wavelengths. */
+static inline bool abbe_haze_glows(const abbe_haze *h, int i) {
+  return i >= 0 && h->glow != NULL && h->glows[i];
 }
 static inline bool abbe_haze_is_coloured(const abbe_haze *h, int i) {
   return abbe_haze_is(h) && h->coloured[abbe_haze_row(h, i)];

@@ -160,7 +160,7 @@ abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_
   }
   if (result == ABBE_OK) drop_idle(&m);
   if (result == ABBE_OK)
-    result = abbe_haze_make(geometry, lambda_nm, steps, m.attenuation, &m.haze, error);
+    result = abbe_haze_make(geometry, lambda_nm, steps, m.attenuation, false, &m.haze, error);
   if (result == ABBE_OK) result = abbe_films_make(geometry, lambda_nm, steps, &m.films, error);
   if (result == ABBE_OK) result = find_rough(geometry, &m, error);
   /* the mean over the axes may be grey where each axis has a colour */

@@ -46,7 +46,7 @@ typedef struct abbe_films {
   abbe_film_layer (*layer)[ABBE_FILM_MOST_LAYERS]; /* [count][steps + 1] */
   const abbe_coatings **on; /* [refractors] or NULL; the films of each follow one another: */
   size_t *first;            /* [refractors] */
-  uint64_t key;             /* a digest of all that, and of rough facets; 0: neither is there */
+  uint64_t key; /* a digest of all that, of rough facets and of glow; 0: none of it is there */
 } abbe_films;
 
 /* Errors as abbe_coating_at. */

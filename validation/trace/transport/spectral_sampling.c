@@ -76,10 +76,40 @@ static abbe_result make_fine(const abbe_scene *scene, const abbe_spectral_sampli
   return ABBE_OK;
 }
 
+/* The material of an object that is the first to have it and glows; else NULL. */
+static const abbe_material *glowing(const abbe_scene *scene, size_t object) {
+  const abbe_material *m = scene->object[object].material;
+  if (m == NULL || !abbe_material_is_fluorescent(m)) return NULL;
+  for (size_t i = 0; i < object; i++)
+    if (scene->object[i].material == m) return NULL;
+  return m;
+}
+
+static size_t count_glowing(const abbe_scene *scene) {
+  size_t count = 0;
+  for (size_t i = 0; i < scene->object_count; i++) count += glowing(scene, i) != NULL;
+  return count;
+}
+
+/* What the camera sees of a material's emission, as of a light. */
+static void add_glow(const abbe_spectral_sampling_desc *d, const abbe_material *m, double part,
+                     fine *f) {
+  double sum = 0;
+  for (size_t i = 0; i < f->bins; i++) {
+    double xyz[3];
+    abbe_observer_xyz_of(d->observer, 0.5 * (f->edge_nm[i] + f->edge_nm[i + 1]), xyz);
+    f->one[i] =
+        abbe_material_emission(m, f->edge_nm[i], f->edge_nm[i + 1]) * (xyz[0] + xyz[1] + xyz[2]);
+    sum += f->one[i];
+  }
+  for (size_t i = 0; sum > 0 && i < f->bins; i++) f->density[i] += f->one[i] / sum * part;
+}
+
 /* What the camera sees of the lights, a share of 1 in all, mixed with an even density. */
 static abbe_result fill_density(const abbe_scene *scene, const abbe_spectral_sampling_desc *d,
                                 fine *f, abbe_error *error) {
   const double range = d->max_nm - d->min_nm;
+  const double parts = (double)(lights_of(scene) + count_glowing(scene));
   for (size_t l = 0; l < lights_of(scene); l++) {
     const abbe_illuminant *illuminant = illuminant_of(scene, l);
     double sum = 0;
@@ -99,9 +129,10 @@ static abbe_result fill_density(const abbe_scene *scene, const abbe_spectral_sam
                             l < scene->light_count ? scene->light[l].name : "",
                             l < scene->light_count ? "'" : "", d->min_nm, d->max_nm,
                             ABBE_OBSERVER_MIN_NM, ABBE_OBSERVER_MAX_NM);
-    for (size_t i = 0; i < f->bins; i++)
-      f->density[i] += f->one[i] / sum / (double)lights_of(scene);
+    for (size_t i = 0; i < f->bins; i++) f->density[i] += f->one[i] / sum / parts;
   }
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (glowing(scene, i) != NULL) add_glow(d, glowing(scene, i), 1 / parts, f);
   for (size_t i = 0; i < f->bins; i++)
     f->density[i] =
         (1 - d->uniform) * f->density[i] + d->uniform * (f->edge_nm[i + 1] - f->edge_nm[i]) / range;
@@ -173,6 +204,32 @@ static abbe_result fill_colours(const abbe_scene *scene, abbe_spectral_sampling 
   return ABBE_OK;
 }
 
+/* A watt of every wavelength, in the measure in which the light's own watt has Y = 1. */
+static abbe_result fill_glow(abbe_spectral_sampling *s, abbe_error *error) {
+  static const abbe_illuminant even = {.kind = ABBE_ILLUMINANT_E};
+  const abbe_wavelengths bands = {
+      .count = s->steps, .lambda_nm = s->lambda_nm, .edge_nm = s->lambda_nm};
+  const double range = s->lambda_nm[s->steps] - s->lambda_nm[0];
+  abbe_weights weights;
+  if (s->rows == s->lights) return ABBE_OK;
+  ABBE_TRY(abbe_weights_make_by(s->observer, &bands, &even, ABBE_RGB_SPACE_XYZ, &weights, error));
+  for (size_t l = 0; l < s->lights; l++) {
+    float(*to)[3] = s->xyz + (s->lights + l) * s->steps;
+    double light = 0;
+    for (size_t k = 0; k < s->steps; k++) {
+      const double share = (s->lambda_nm[k + 1] - s->lambda_nm[k]) / range;
+      light += (double)s->power[l * s->steps + k] / (double)s->steps * weights.weight[k][1] / share;
+    }
+    for (size_t k = 0; k < s->steps; k++) {
+      const double share = (s->lambda_nm[k + 1] - s->lambda_nm[k]) / range;
+      for (int c = 0; c < 3; c++) to[k][c] = (float)(weights.weight[k][c] / share / light);
+      s->power[(s->lights + l) * s->steps + k] = 1;
+    }
+  }
+  abbe_weights_free(&weights);
+  return ABBE_OK;
+}
+
 abbe_result abbe_spectral_sampling_make(const abbe_scene *scene,
                                         const abbe_spectral_sampling_desc *desc,
                                         abbe_spectral_sampling *out, abbe_error *error) {
@@ -187,12 +244,13 @@ abbe_result abbe_spectral_sampling_make(const abbe_scene *scene,
                           desc->bands, ABBE_SPECTRAL_SAMPLING_STEPS / 16);
   abbe_spectral_sampling s = {.observer = desc->observer,
                               .steps = ABBE_SPECTRAL_SAMPLING_STEPS,
-                              .lights = lights_of(scene)};
+                              .lights = lights_of(scene),
+                              .rows = lights_of(scene) * (count_glowing(scene) > 0 ? 2 : 1)};
   fine f = {0};
   s.lambda_nm = calloc(s.steps + 1, sizeof *s.lambda_nm);
   s.white = calloc(s.lights + 1, sizeof *s.white);
-  s.xyz = calloc(s.lights * s.steps + 1, sizeof *s.xyz);
-  s.power = calloc(s.lights * s.steps + 1, sizeof *s.power);
+  s.xyz = calloc(s.rows * s.steps + 1, sizeof *s.xyz);
+  s.power = calloc(s.rows * s.steps + 1, sizeof *s.power);
   abbe_result result = make_fine(scene, desc, &f, error);
   if (result == ABBE_OK && (!s.lambda_nm || !s.white || !s.xyz || !s.power))
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for tables of the spectrum");
@@ -200,6 +258,7 @@ abbe_result abbe_spectral_sampling_make(const abbe_scene *scene,
   if (result == ABBE_OK) {
     invert(&f, &s);
     result = fill_colours(scene, &s, error);
+    if (result == ABBE_OK) result = fill_glow(&s, error);
   }
   free(f.edge_nm);
   if (result != ABBE_OK) abbe_spectral_sampling_free(&s);
@@ -216,11 +275,18 @@ void abbe_spectral_sampling_free(abbe_spectral_sampling *s) {
   *s = (abbe_spectral_sampling){0};
 }
 
+double abbe_spectral_sampling_brightest(const abbe_spectral_sampling *s) {
+  double most = 1;
+  for (size_t i = s->lights * s->steps; i < s->rows * s->steps; i++)
+    most = fmax(most, (double)s->xyz[i][1]);
+  return most;
+}
+
 void abbe_spectral_sampling_colours(const abbe_spectral_sampling *s, abbe_rgb_space space,
                                     float (*rgb)[3]) {
   double matrix[9];
   abbe_rgb_space_from_xyz(space, matrix);
-  for (size_t i = 0; i < s->lights * s->steps; i++) {
+  for (size_t i = 0; i < s->rows * s->steps; i++) {
     double c[3] = {(double)s->xyz[i][0], (double)s->xyz[i][1], (double)s->xyz[i][2]};
     abbe_rgb_space_apply(matrix, c, c);
     for (int k = 0; k < 3; k++) rgb[i][k] = (float)c[k];

@@ -1,3 +1,4 @@
+#include "validation/trace/medium/glow.h"
 #include "validation/trace/walks/eye_shading.h"
 
 #include <string.h>
@@ -59,6 +60,37 @@ bool abbe_eye_turn(const abbe_eye_context *c, abbe_eye_path *p, float length,
   turned->steps++;
   turned->id = p->id * 0x9e3779b1u + 0x27d4eb2fu;
   return true;
+}
+
+bool abbe_eye_glow(const abbe_eye_context *c, const abbe_eye_path *p, float length,
+                   abbe_eye_path *from) {
+  const abbe_media *m = c->w->media;
+  const abbe_haze *h = &m->haze;
+  const int medium = abbe_media_of(p->inside);
+  float random[4], density, kind[4];
+  if (!abbe_haze_glows(h, medium) || !p->dispersed || !(length < INFINITY)) return false;
+  abbe_eye_random4(c, p->id ^ 0x676c6f77u, p->steps, random);
+  *from = *p;
+  from->share *= abbe_glow_excite(h->glow, medium, random[0], &from->step, &from->within);
+  if (!(from->share > 0)) return false;
+  abbe_eye_random4(c, p->id ^ 0x6b696e64u, p->steps, kind);
+  const float whole = abbe_media_extinction(m, medium, p->step, p->within, p->d, p->wave);
+  const float t = abbe_haze_place(whole, length, random[1], &density);
+  abbe_glow_turn(random[2], random[3], from->d);
+  for (int k = 0; k < 3; k++) from->o[k] += t * p->d[k];
+  from->wave = kind[0] < 0.5f;
+  /* radiance over the squared index is kept, and indices differ */
+  const float n = abbe_media_n(m, medium, from->step, from->within) /
+                  abbe_media_n(m, medium, p->step, p->within);
+  from->share *= n * n * expf(-t * whole) / density *
+                 abbe_glow_rate(m, medium, from->step, from->within, from->d, from->wave);
+  from->shown = p->glows ? p->shown : p->step;
+  from->glows = true;
+  from->lobe = 0;
+  memset(from->stokes, 0, sizeof from->stokes);
+  from->steps++;
+  from->id = p->id * 0x9e3779b1u + 0x165667b1u;
+  return from->share > 0;
 }
 
 bool abbe_eye_chooses(const abbe_eye_context *c, abbe_eye_path *p, const abbe_eye_path *other) {

@@ -18,6 +18,12 @@ static void add_light(const abbe_eye_context *c, const abbe_eye_path *p, size_t 
   const float *colour = p->dispersed ? w->colour[light * steps + p->step] : w->white[light];
   float of_white[3], kept = 1;
   share *= p->share;
+  size_t seen = light * steps + p->step;
+  if (p->glows) {
+    share *= w->sampling->power[seen];
+    seen = (w->sampling->lights + light) * steps + p->shown;
+    colour = w->colour[seen];
+  }
   if (reflected && p->dispersed)
     kept = abbe_reflectance_at_step(w->reflectance, reflected, p->step);
   else if (reflected)
@@ -27,8 +33,8 @@ static void add_light(const abbe_eye_context *c, const abbe_eye_path *p, size_t 
   for (size_t i = 0; i < b->count; i++) {
     float power = b->power[light * b->count + i];
     if (p->dispersed) {
-      if (b->of_step[p->step] != i) continue;
-      power = kept * w->sampling->power[light * steps + p->step] / (float)b->width_nm;
+      if (b->of_step[seen % steps] != i) continue;
+      power = kept * w->sampling->power[seen] / (float)b->width_nm;
     } else if (reflected) {
       power *= abbe_reflectance_in_band(w->reflectance, reflected, light, i);
     }
@@ -68,70 +74,6 @@ static void add_environment(const abbe_eye_context *c, const abbe_eye_path *p, c
     c->out->band[i] +=
         share * kept * abbe_eye_dot(e->band[i], rgb) * b->power[e->light * b->count + i];
   }
-}
-
-typedef struct gathering {
-  const abbe_eye_context *c;
-  const abbe_eye_path *p;
-  const abbe_reflected *reflected; /* table of a receiver */
-  int medium;                      /* medium that scatters */
-  float from;                      /* where the haze begins on the path */
-  float sum[3];
-  float band[ABBE_BANDS_MAX];
-} gathering;
-
-/* How much a photon of that step counts for the path: of one wavelength, in a window of wavelengths
- * around it, cut at the ends of the range. */
-static float window(const abbe_eye_walk *w, const abbe_eye_path *p, size_t step) {
-  if (!p->dispersed) return 1;
-  const size_t steps = w->sampling->steps;
-  const double *nm = w->sampling->lambda_nm;
-  double own = nm[p->step] + (double)p->within * (nm[p->step + 1] - nm[p->step]);
-  double other = 0.5 * (nm[step] + nm[step + 1]);
-  if (fabs(own - other) > w->window_nm) return 0;
-  double span = fmin(other + w->window_nm, nm[steps]) - fmax(other - w->window_nm, nm[0]);
-  double density = 1 / ((double)steps * (nm[p->step + 1] - nm[p->step]));
-  return (float)(1 / (span * density));
-}
-
-static void add_photon(gathering *g, size_t colour, float flux) {
-  const abbe_eye_walk *w = g->c->w;
-  for (int k = 0; k < 3; k++) g->sum[k] += flux * w->colour[colour][k];
-  if (w->bands->count > 0)
-    g->band[w->bands->of_step[colour % w->sampling->steps]] +=
-        flux * w->sampling->power[colour] / (float)w->bands->width_nm;
-}
-
-static void take_photon(void *user, const abbe_grid_photon *photon) {
-  gathering *g = user;
-  const abbe_eye_walk *w = g->c->w;
-  const size_t step = photon->colour % w->sampling->steps;
-  const float flux = fabsf(photon->flux) * window(w, g->p, step);
-  if (flux > 0)
-    add_photon(g, photon->colour,
-               flux * abbe_reflectance_at_step(w->reflectance, g->reflected, (uint32_t)step));
-}
-
-/* What was gathered, times scale, into the sample. */
-static void add_gathered(const gathering *g, float scale, bool caustic) {
-  abbe_eye_sample *out = g->c->out;
-  for (int k = 0; k < 3; k++) {
-    const float add = scale * g->p->tint[k] * g->sum[k];
-    out->rgb[k] += add;
-    if (caustic) out->caustic[k] += add;
-  }
-  for (size_t i = 0; i < g->c->w->bands->count; i++) out->band[i] += scale * g->band[i];
-}
-
-static void add_caustic(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_hit *hit,
-                        float side, const abbe_reflected *reflected) {
-  const abbe_eye_walk *w = c->w;
-  if (w->grid == NULL) return;
-  gathering g = {.c = c, .p = p, .reflected = reflected};
-  abbe_photon_grid_gather(w->grid, hit->p, w->radius,
-                          (uint32_t)(hit->surface - w->geometry->surface), side, take_photon, &g);
-  float unit = (float)w->geometry->unit, r = w->radius * unit;
-  add_gathered(&g, p->share * inverse_pi * inverse_pi / (r * r), true);
 }
 
 /* What haze in the air leaves of light that comes straight along -d over that distance. */
@@ -249,7 +191,7 @@ static void shade(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_
     add_environment(c, p, rgb, 1, &reflected);
   }
   if (scene->ambient > 0) add_white(c, p, (float)scene->ambient * inverse_pi, &reflected);
-  if (!straight) add_caustic(c, p, hit, side, &reflected);
+  if (!straight) abbe_eye_gather_caustic(c, p, hit, side, &reflected);
 }
 
 /* Radiance over the squared index is the same on both sides of an interface [BornWolf1999, 4.8]:
@@ -293,35 +235,13 @@ static void add_air_light(const abbe_eye_context *c, const abbe_eye_path *p,
   }
 }
 
-static void take_scattered(void *user, const abbe_haze_photon *photon, float t) {
-  gathering *g = user;
-  const abbe_eye_walk *w = g->c->w;
-  const abbe_haze *h = &w->media->haze;
-  const uint32_t step = (uint32_t)(photon->colour % w->sampling->steps);
-  float flux = photon->flux * window(w, g->p, step);
-  if (!(flux > 0)) return;
-  flux *= abbe_haze_phase(h, g->medium, -abbe_eye_dot(photon->d, g->p->d));
-  add_photon(g, photon->colour,
-             flux * expf(-(t - g->from) * abbe_haze_extinction(h, g->medium, step, 0.5f)));
-}
-
-/* Light that refractors and mirrors send to the haze, from the photons around the path. */
-static void add_shafts(const abbe_eye_context *c, const abbe_eye_path *p, int medium, float from,
-                       float to, float radius) {
-  const abbe_eye_walk *w = c->w;
-  gathering g = {.c = c, .p = p, .medium = medium, .from = from};
-  abbe_haze_grid_gather(w->shafts, p->o, p->d, from, to, radius, medium, take_scattered, &g);
-  const float r = radius * (float)w->geometry->unit;
-  add_gathered(&g, p->share * inverse_pi / (r * r), false);
-}
-
 void abbe_eye_haze(const abbe_eye_context *c, abbe_eye_path *p, float length, bool straight) {
   const abbe_eye_walk *w = c->w;
   const abbe_haze *h = &w->media->haze;
   const int medium = abbe_media_of(p->inside);
   float from = 0, to = length;
   if (!abbe_haze_clip(h, medium, p->o, p->d, &from, &to)) return;
-  if (abbe_haze_scatters(h, medium)) {
+  if (abbe_haze_scatters(h, medium) || abbe_haze_glows(h, medium)) {
     abbe_eye_path own = *p;
     own.share *= spread(c, p, true);
     const abbe_air_ray ray = {.geometry = w->geometry,
@@ -337,7 +257,7 @@ void abbe_eye_haze(const abbe_eye_context *c, abbe_eye_path *p, float length, bo
     const float end = straight ? fminf(to, w->shaft_near) : to;
     const float radius = straight ? 0.25f * w->shaft_radius : w->shaft_radius;
     if (w->shafts != NULL && end > from && end < INFINITY)
-      add_shafts(c, &own, medium, from, end, radius);
+      abbe_eye_gather_shafts(c, &own, medium, from, end, radius);
   }
   p->share *= expf(-(to - from) *
                    abbe_media_extinction(w->media, medium, p->step, p->within, p->d, p->wave));

@@ -20,6 +20,8 @@ typedef struct abbe_eye_path {
   bool dispersed;
   uint32_t step;
   float within;
+  bool glows;     /* it has gone back from a glow to what excites it: */
+  uint32_t shown; /* the step in which the camera sees that */
   abbe_media_set inside;
   float carried; /* matched: what a splitting path would carry */
   uint32_t walls, steps, id;
@@ -68,6 +70,11 @@ bool abbe_eye_trace(const abbe_eye_context *context, const abbe_eye_path *path, 
 bool abbe_eye_turn(const abbe_eye_context *context, abbe_eye_path *path, float length,
                    abbe_eye_path *turned);
 
+/* What a refractor glows on the path's way of that length: *from goes back from there to what
+ * excites it, at another wavelength; false: there is none. */
+bool abbe_eye_glow(const abbe_eye_context *context, const abbe_eye_path *path, float length,
+                   abbe_eye_path *from);
+
 /* One of both goes on for both, by chance of their shares: true where that is the other, now in
  * *path. */
 bool abbe_eye_chooses(const abbe_eye_context *context, abbe_eye_path *path,
@@ -77,6 +84,13 @@ bool abbe_eye_chooses(const abbe_eye_context *context, abbe_eye_path *path,
  * camera's own ray, whose caustic the photons bring. */
 void abbe_eye_arrive(const abbe_eye_context *context, const abbe_eye_path *path, bool met,
                      const abbe_hit *hit, bool straight);
+
+/* The caustic at a receiver that a path meets, on that side, and light that refractors and mirrors
+ * send to the haze on [from, to] of its way: from the photons around, into the sample. */
+void abbe_eye_gather_caustic(const abbe_eye_context *context, const abbe_eye_path *path,
+                             const abbe_hit *hit, float side, const abbe_reflected *reflected);
+void abbe_eye_gather_shafts(const abbe_eye_context *context, const abbe_eye_path *path, int medium,
+                            float from, float to, float radius);
 
 /* What haze on the path's way of that length, or INFINITY, adds to the sample and takes of the
  * path. Where its coefficients vary over wavelength the path is dispersed. straight: as above. */

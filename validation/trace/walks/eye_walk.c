@@ -261,12 +261,18 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
   for (int k = 0; k < 4; k++) random[k] = abbe_random_float(bits[k]);
   if (abbe_haze_is(&c->w->media->haze)) {
     if (is_coloured_haze(c, p)) abbe_eye_disperse(p, bits[1]);
-    abbe_eye_path turned;
-    const bool turns = abbe_eye_turn(c, p, met ? length : INFINITY, &turned);
-    abbe_eye_haze(c, p, met ? length : INFINITY, false);
+    const float far = met ? length : INFINITY;
+    abbe_eye_path turned, glow;
+    const bool glows = abbe_eye_glow(c, p, far, &glow);
+    const bool turns = abbe_eye_turn(c, p, far, &turned);
+    abbe_eye_haze(c, p, far, false);
     if (turns && b->count < TURNS_ROOM)
       b->path[b->count++] = turned;
     else if (turns && abbe_eye_chooses(c, p, &turned))
+      return true;
+    if (glows && b->count < TURNS_ROOM)
+      b->path[b->count++] = glow;
+    else if (glows && abbe_eye_chooses(c, p, &glow))
       return true;
   } else if (met) {
     absorb(c, p, length, bits[1]);
@@ -455,10 +461,11 @@ static void walk_sample(const abbe_eye_context *c, const abbe_trace_camera *came
   if (met) add_first(c, p, &hit, length);
   const uint32_t count = is_coloured_haze(c, p) ? HEROES : 1;
   for (uint32_t i = 0; i < count; i++) {
-    abbe_eye_path own = *p, turned;
+    abbe_eye_path own = *p, turned, glow;
     own.id += i << 24;
     own.share /= (float)count;
     if (count > 1) abbe_eye_disperse(&own, abbe_random_part(wave, i, count));
+    if (abbe_eye_glow(c, &own, met ? length : INFINITY, &glow)) follow(c, &glow);
     if (abbe_eye_turn(c, &own, met ? length : INFINITY, &turned)) follow(c, &turned);
     abbe_eye_haze(c, &own, met ? length : INFINITY, true);
     walk_on(c, &own, met, &hit, wave);

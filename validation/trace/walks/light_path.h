@@ -6,6 +6,7 @@
 #ifndef ABBE_VALIDATION_TRACE_WALKS_LIGHT_PATH_H
 #define ABBE_VALIDATION_TRACE_WALKS_LIGHT_PATH_H
 
+#include "validation/trace/medium/glow.h"
 #include "validation/trace/transport/double_refraction.h"
 #include "validation/trace/transport/interface.h"
 #include "validation/trace/transport/media.h"
@@ -34,6 +35,7 @@ typedef struct abbe_light_path {
   float stokes[3];       /* of polarised light, outside of crystals */
   bool turned, frosted;  /* by haze in a refractor; at a rough face */
   bool shown;            /* its first interface was one */
+  bool glows;            /* it is of the glow of something */
 } abbe_light_path;
 
 /* Along the ray of lane k, which Embree has been through. */
@@ -48,6 +50,7 @@ static inline abbe_light_stretch abbe_light_path_stretch(const abbe_light_path *
   out.steps = s->steps;
   out.medium = abbe_media_of(s->inside);
   out.known = s->turned || s->shown;
+  out.glows = s->glows;
   out.wave = s->wave;
   abbe_ray_take(rays, k, out.o, out.d);
   return out;
@@ -101,10 +104,11 @@ static inline bool abbe_light_path_fade(const abbe_inner_rules *r, const abbe_me
   if (!abbe_haze_clip(haze, medium, o, d, &from, &to)) return true;
   const float whole = abbe_media_extinction(media, medium, s->step, s->within, d, s->wave);
   if (!(whole > 0)) return true;
+  const float glow = abbe_glow_rate(media, medium, s->step, s->within, d, s->wave);
   const float off = abbe_haze_scattering(haze, medium, s->step, s->within);
   const bool turns = abbe_haze_turns(haze, medium); /* what is scattered has gone its own way */
   const float part = turns ? 0 : off / whole;
-  const float left = expf(-(to - from) * (turns ? whole - off : whole));
+  const float left = expf(-(to - from) * ((turns ? whole - off : whole) - glow));
   const float taken = s->y * s->flux * (1 - left);
   ledger->scattered += (double)(part * taken);
   ledger->absorbed += (double)((1 - part) * taken);
@@ -113,32 +117,63 @@ static inline bool abbe_light_path_fade(const abbe_inner_rules *r, const abbe_me
   return abbe_light_path_survives(r, s, ledger);
 }
 
-/* Where haze in a refractor turns the path before it meets what its ray met: on from o along d;
- * false: it does not. */
-static inline bool abbe_light_path_turn(const abbe_inner_rules *r, const abbe_media *media,
-                                        abbe_light_path *s, const struct RTCRayHit16 *rays,
-                                        size_t k, float o[3], float d[3],
+/* What a refractor absorbs of the path there comes back at another wavelength: one that is traced,
+ * or the path ends, without light. light: whose path it is. */
+static inline void abbe_light_path_glow(const abbe_inner_rules *r, const abbe_media *media,
+                                        size_t light, abbe_light_path *s, float d[3],
                                         abbe_light_ledger *ledger) {
+  const abbe_glow *g = media->haze.glow;
+  const abbe_spectral_sampling *sampling = g->sampling;
+  const int medium = abbe_media_of(s->inside);
+  const size_t row = s->glows ? sampling->lights + light : light;
+  const double nm = abbe_spectral_sampling_lambda(sampling, s->step, s->within);
+  const double watts = (double)s->flux * (double)sampling->power[row * sampling->steps + s->step];
+  float random[4];
+  abbe_random4(s->id, s->steps, r->pass, r->seed ^ 0x676c6f77u, random);
+  ledger->excited += (double)(s->y * s->flux);
+  ledger->quanta[0] += watts * nm;
+  ledger->quanta[1] += watts * nm * (double)g->yield[medium];
+  s->flux = 0;
+  if (!abbe_glow_emit(g, medium, random[0], &s->step, &s->within)) return;
+  const double to_nm = abbe_spectral_sampling_lambda(sampling, s->step, s->within);
+  s->flux = s->full = (float)(watts * (double)g->yield[medium] * nm / to_nm);
+  s->y = sampling->xyz[(sampling->lights + light) * sampling->steps + s->step][1];
+  s->glows = true;
+  ledger->glowing += (double)(s->y * s->flux);
+  abbe_glow_turn(random[1], random[2], d);
+}
+
+/* Where haze in a refractor turns the path before it meets what its ray met, or absorbs it to glow:
+ * on from o along d; false: it does not. light: whose path it is. */
+static inline bool abbe_light_path_turn(const abbe_inner_rules *r, const abbe_media *media,
+                                        size_t light, abbe_light_path *s,
+                                        const struct RTCRayHit16 *rays, size_t k, float o[3],
+                                        float d[3], abbe_light_ledger *ledger) {
   const abbe_haze *haze = &media->haze;
   const int medium = abbe_media_of(s->inside);
-  if (!abbe_haze_turns(haze, medium)) return false;
-  float random[4], along[3];
+  const bool turns = abbe_haze_turns(haze, medium);
+  if (!turns && !abbe_haze_glows(haze, medium)) return false;
+  float random[4], kind[4], along[3];
   abbe_random4(s->id, s->steps, r->pass, r->seed ^ 0x7475726eu, random);
-  const float off = abbe_haze_scattering(haze, medium, s->step, s->within);
+  abbe_ray_take(rays, k, o, along);
+  const float glow = abbe_glow_rate(media, medium, s->step, s->within, along, s->wave);
+  const float off = (turns ? abbe_haze_scattering(haze, medium, s->step, s->within) : 0) + glow;
   const float t = -log1pf(-random[0]) / off;
   if (!(t < rays->ray.tfar[k])) return false;
-  abbe_ray_take(rays, k, o, along);
   const float whole = abbe_media_extinction(media, medium, s->step, s->within, along, s->wave);
   const float left = expf(-t * (whole - off));
   ledger->absorbed += (double)(s->y * s->flux * (1 - left));
   s->flux *= left;
-  if (!s->turned) ledger->turned += (double)(s->y * s->flux);
+  abbe_random4(s->id, s->steps, r->pass, r->seed ^ 0x6b696e64u, kind);
+  const bool glowing = kind[0] * off < glow;
+  if (!s->turned && !glowing) ledger->turned += (double)(s->y * s->flux);
   s->turned = true;
   s->wave = random[3] < 0.5f;
   memset(s->stokes, 0, sizeof s->stokes);
   s->steps++;
   for (int i = 0; i < 3; i++) o[i] += t * along[i];
   abbe_haze_turn(haze, medium, along, random[1], random[2], d);
+  if (glowing) abbe_light_path_glow(r, media, light, s, d, ledger);
   return true;
 }
 
@@ -351,7 +386,8 @@ static inline abbe_photon_hit abbe_light_path_hit(const abbe_light_path *s, cons
                            .side = along < 0 ? 1 : -1,
                            .flux = s->flux,
                            .step = s->step,
-                           .chance = {s->chance[0], s->chance[1]}};
+                           .chance = {s->chance[0], s->chance[1]},
+                           .glows = s->glows};
 }
 
 /* Matched physics: whether the renderer would still follow the path. */

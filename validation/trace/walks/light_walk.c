@@ -81,8 +81,11 @@ static void meet_interface(const abbe_light_walk *w, const abbe_light_path *s, p
 static bool turns(run *r, const struct RTCRayHit16 *rays, size_t k, abbe_light_path *s) {
   ray_batch *next = r->w->next;
   float o[3], d[3];
-  if (!abbe_light_path_turn(&r->rules, r->w->media, s, rays, k, o, d, r->ledger)) return false;
-  if (!abbe_light_path_survives(&r->rules, s, r->ledger)) return true;
+  const size_t light =
+      r->light != NULL ? (size_t)(r->light - r->w->g->scene->light) : r->w->g->scene->light_count;
+  if (!abbe_light_path_turn(&r->rules, r->w->media, light, s, rays, k, o, d, r->ledger))
+    return false;
+  if (!(s->flux > 0) || !abbe_light_path_survives(&r->rules, s, r->ledger)) return true;
   if (s->steps >= ABBE_INNER_MAX_STEPS) {
     r->ledger->lost += (double)(s->y * s->flux);
     return true;
@@ -165,7 +168,8 @@ static bool stays_in_solid(const abbe_light_walk *w, const abbe_light_path *s) {
   if (s->steps < ABBE_PHOTON_SPLITS && w->splits >> s->steps != 0) return false; /* one is split */
   const int medium = abbe_media_of(s->inside);
   return !w->physics.polarised && abbe_solid_is(&w->g->solid[medium]) &&
-         !abbe_media_is_crystal(w->media, medium) && !abbe_haze_scatters(&w->media->haze, medium);
+         !abbe_media_is_crystal(w->media, medium) && !abbe_haze_scatters(&w->media->haze, medium) &&
+         !abbe_haze_glows(&w->media->haze, medium);
 }
 
 /* Into the batch of its solid, whose paths leave it first where it is another's. */

@@ -28,6 +28,7 @@ typedef struct abbe_light_stretch {
   int medium;         /* the refractor that it is in, or -1: the air */
   bool known;         /* paths of the camera that a refractor's haze turns find such light: haze has
                          scattered it before, or its first interface was a rough face */
+  bool glows;         /* it is of the glow of something */
   uint8_t wave;       /* in a crystal: which of its two */
 } abbe_light_stretch;
 
@@ -43,6 +44,7 @@ typedef struct abbe_photon_hit {
    * there, or where there was no choice. */
   float chance[ABBE_PHOTON_SPLITS];
   bool hidden; /* from the light by other receivers, so that its map has no place for it */
+  bool glows;  /* it is of the glow of something */
 } abbe_photon_hit;
 
 /* Where the light of the photons went: W, each wavelength with its share of Y. The words are those
@@ -63,6 +65,9 @@ typedef struct abbe_light_ledger {
                        mirror */
   double turned;    /* the part of all that which a refractor's haze has scattered, once or more */
   double frosted;   /* the part of all that which has met a rough face */
+  double excited;   /* taken by fluorescence, and ended there */
+  double glowing;   /* emitted by it, and followed on: reached and glowing go where the rest says */
+  double quanta[2]; /* the photons of both, in W nm: taken, and emitted of whatever wavelength */
 } abbe_light_ledger;
 
 #endif

@@ -26,6 +26,15 @@ TEST(pleochroism_is_noted) {
                               "ordinary ray and 97 -12 14 of the extraordinary one, 50 apart"));
 }
 
+TEST(fluorescence_is_noted) {
+  const char *head = "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR;
+  FILLED(abbe_plan, plan,
+         plan_text(printed("%s%s", head, BALL("diamond-fluorescent")), NULL, &plan));
+  assert_true(is_noted(&plan,
+                       "diamond-fluorescent: fluorescent; of photons that excite it 30 % come "
+                       "back at 415.2 to 550 nm, 100 % of these within the range"));
+}
+
 /* What a film reflects, from both sides, beside the bare face. */
 TEST(films_are_noted) {
   const char *head = "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR;

@@ -1,0 +1,113 @@
+#include "validation/trace/medium/glow.h"
+#include "validation/trace/walks/eye_shading.h"
+
+#include <string.h>
+
+static const float inverse_pi = 0.318309886f;
+
+typedef struct gathering {
+  const abbe_eye_context *c;
+  const abbe_eye_path *p;
+  const abbe_reflected *reflected; /* table of a receiver */
+  int medium;                      /* medium that scatters */
+  float from;                      /* where the haze begins on the path */
+  float sum[3];
+  float band[ABBE_BANDS_MAX];
+} gathering;
+
+/* How much a photon of that step counts for the path: of one wavelength, in a window of wavelengths
+ * around it, cut at the ends of the range. */
+static float window(const abbe_eye_walk *w, const abbe_eye_path *p, size_t step) {
+  if (!p->dispersed) return 1;
+  const size_t steps = w->sampling->steps;
+  const double *nm = w->sampling->lambda_nm;
+  double own = nm[p->step] + (double)p->within * (nm[p->step + 1] - nm[p->step]);
+  double other = 0.5 * (nm[step] + nm[step + 1]);
+  if (fabs(own - other) > w->window_nm) return 0;
+  double span = fmin(other + w->window_nm, nm[steps]) - fmax(other - w->window_nm, nm[0]);
+  double density = 1 / ((double)steps * (nm[p->step + 1] - nm[p->step]));
+  return (float)(1 / (span * density));
+}
+
+/* As what glows within a step in light of that colour. */
+static size_t glow_of(const abbe_spectral_sampling *s, size_t colour, uint32_t shown) {
+  const size_t row = colour / s->steps;
+  return (row < s->lights ? row + s->lights : row) * s->steps + shown;
+}
+
+static void add_photon(gathering *g, size_t colour, float flux) {
+  const abbe_eye_walk *w = g->c->w;
+  if (g->p->glows) {
+    flux *= w->sampling->power[colour];
+    colour = glow_of(w->sampling, colour, g->p->shown);
+  }
+  for (int k = 0; k < 3; k++) g->sum[k] += flux * w->colour[colour][k];
+  if (w->bands->count > 0)
+    g->band[w->bands->of_step[colour % w->sampling->steps]] +=
+        flux * w->sampling->power[colour] / (float)w->bands->width_nm;
+}
+
+static void take_photon(void *user, const abbe_grid_photon *photon) {
+  gathering *g = user;
+  const abbe_eye_walk *w = g->c->w;
+  const size_t step = photon->colour % w->sampling->steps;
+  const float flux = fabsf(photon->flux) * window(w, g->p, step);
+  if (flux > 0)
+    add_photon(g, photon->colour,
+               flux * abbe_reflectance_at_step(w->reflectance, g->reflected, (uint32_t)step));
+}
+
+/* What was gathered, times scale, into the sample. */
+static void add_gathered(const gathering *g, float scale, bool caustic) {
+  abbe_eye_sample *out = g->c->out;
+  for (int k = 0; k < 3; k++) {
+    const float add = scale * g->p->tint[k] * g->sum[k];
+    out->rgb[k] += add;
+    if (caustic) out->caustic[k] += add;
+  }
+  for (size_t i = 0; i < g->c->w->bands->count; i++) out->band[i] += scale * g->band[i];
+}
+
+void abbe_eye_gather_caustic(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_hit *hit,
+                             float side, const abbe_reflected *reflected) {
+  const abbe_eye_walk *w = c->w;
+  if (w->grid == NULL) return;
+  gathering g = {.c = c, .p = p, .reflected = reflected};
+  abbe_photon_grid_gather(w->grid, hit->p, w->radius,
+                          (uint32_t)(hit->surface - w->geometry->surface), side, take_photon, &g);
+  float unit = (float)w->geometry->unit, r = w->radius * unit;
+  add_gathered(&g, p->share * inverse_pi * inverse_pi / (r * r), true);
+}
+
+/* What a photon that ends there makes glow, at the path's own wavelength. */
+static void take_glow(gathering *g, const abbe_haze_photon *photon, float t) {
+  const abbe_spectral_sampling *s = g->c->w->sampling;
+  const abbe_haze *h = &g->c->w->media->haze;
+  const uint32_t shown = g->p->step, step = (uint32_t)(photon->colour % s->steps);
+  const float yield = abbe_glow_yield(h->glow, g->medium, step, shown);
+  const float left = expf(-(t - g->from) * abbe_haze_extinction(h, g->medium, shown, g->p->within));
+  add_photon(g, glow_of(s, photon->colour, shown),
+             0.0795774715f * photon->glow * s->power[photon->colour] * yield * left);
+}
+
+static void take_scattered(void *user, const abbe_haze_photon *photon, float t) {
+  gathering *g = user;
+  const abbe_eye_walk *w = g->c->w;
+  const abbe_haze *h = &w->media->haze;
+  const uint32_t step = (uint32_t)(photon->colour % w->sampling->steps);
+  if (photon->glow > 0) take_glow(g, photon, t);
+  float flux = photon->flux * window(w, g->p, step);
+  if (!(flux > 0)) return;
+  flux *= abbe_haze_phase(h, g->medium, -abbe_eye_dot(photon->d, g->p->d));
+  add_photon(g, photon->colour,
+             flux * expf(-(t - g->from) * abbe_haze_extinction(h, g->medium, step, 0.5f)));
+}
+
+void abbe_eye_gather_shafts(const abbe_eye_context *c, const abbe_eye_path *p, int medium,
+                            float from, float to, float radius) {
+  const abbe_eye_walk *w = c->w;
+  gathering g = {.c = c, .p = p, .medium = medium, .from = from};
+  abbe_haze_grid_gather(w->shafts, p->o, p->d, from, to, radius, medium, take_scattered, &g);
+  const float r = radius * (float)w->geometry->unit;
+  add_gathered(&g, p->share * inverse_pi / (r * r), false);
+}
