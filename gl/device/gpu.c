@@ -46,8 +46,8 @@ static abbe_result allocate_buffer(abbe_gpu *gpu, size_t size, GLuint *out, abbe
   return result;
 }
 
-abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
-                                 abbe_error *error) {
+static abbe_result make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
+                               abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
   const size_t room = abbe_gpu_store_room(size);
   const abbe_stored_key key = {.kind = ABBE_STORED_BUFFER, .bytes = room};
@@ -71,6 +71,20 @@ abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, G
     gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, data);
   }
   return result;
+}
+
+/* llvmpipe's limit is passed over: its shaders reach all of a buffer. */
+abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
+                                 abbe_error *error) {
+  GLint most = 0;
+  *out = 0;
+  if (!gpu->software) gpu->gl->GetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+  if (most > 0 && size > (size_t)most)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%s: shaders reach %d bytes of a buffer, and this one has %zu: use fewer "
+                          "photons, a smaller picture, or --backend cpu",
+                          gpu->gl->description, most, size);
+  return make_buffer(gpu, size, data, out, error);
 }
 
 static size_t texel_bytes(GLenum format) {
@@ -305,7 +319,7 @@ abbe_result abbe_gpu_make_texels(abbe_gpu *gpu, GLenum format, size_t size, cons
                                  int unit, GLuint *buffer, GLuint *texture, abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
   abbe_gpu_drop_buffers(gpu, 1, buffer);
-  ABBE_TRY(abbe_gpu_make_buffer(gpu, size, data, buffer, error));
+  ABBE_TRY(make_buffer(gpu, size, data, buffer, error));
   if (*texture == 0) gl->GenTextures(1, texture);
   gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
   gl->BindTexture(GL_TEXTURE_BUFFER, *texture);

@@ -148,7 +148,7 @@ void abbe_gpu_free(abbe_gpu *gpu);
 /* A storage buffer; data may be NULL: what is in it is then not known. What is made is put back by
  * abbe_gpu_drop_*, and taken up by what is made alike; where memory is short, what is not in use
  * gives way. So of textures. ABBE_GL, also where an older error of OpenGL is pending, which is
- * cleared; ABBE_NO_MEMORY. */
+ * cleared; ABBE_UNSUPPORTED beyond what shaders reach; ABBE_NO_MEMORY. */
 abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
                                  abbe_error *error);
 /* A texture of one level, an array where layers > 0. ABBE_GL, ABBE_NO_MEMORY. */

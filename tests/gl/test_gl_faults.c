@@ -245,6 +245,25 @@ TEST(shaders_that_do_not_compile) {
   abbe_context_free(context);
 }
 
+/* Only llvmpipe's shaders are known to reach beyond what it says. */
+TEST(a_buffer_that_shaders_do_not_reach) {
+  abbe_context *context = NULL;
+  abbe_renderer *renderer = NULL;
+  abbe_error why = {0};
+  lowered = GL_MAX_SHADER_STORAGE_BLOCK_SIZE;
+  low = 1024;
+  mute = true;
+  make_gem(&context, &renderer, ABBE_UNSUPPORTED, &why);
+  assert_null(renderer);
+  assert_contains(why.text, "shaders reach 1024 bytes of a buffer");
+  assert_contains(why.text, "--backend cpu");
+  abbe_context_free(context);
+  mute = false;
+  make_gem(&context, &renderer, ABBE_OK, &why);
+  abbe_renderer_free(renderer);
+  abbe_context_free(context);
+}
+
 static bool lose(void *user, double done) {
   (void)user;
   (void)done;
