@@ -212,8 +212,8 @@ static void tell_batch(const abbe_deposit_pass *pass, size_t light, const abbe_h
                             p->tile[k]);
 }
 
-/* And what it would read. Returns how many paths there are. */
-static size_t map_paths(const abbe_deposit_pass *pass, bool fine, mapped *m, abbe_path_splats *p) {
+/* And what it would read. */
+static void map_paths(const abbe_deposit_pass *pass, bool fine, mapped *m, abbe_path_splats *p) {
   const abbe_trace_pass *trace = pass->trace;
   const abbe_hits *nodes = fine ? &pass->refine->hits : &trace->hits;
   const size_t tints = fine ? trace->spectra->nodes * p->refractors * ABBE_TINT_TEXELS : 0;
@@ -233,13 +233,13 @@ static size_t map_paths(const abbe_deposit_pass *pass, bool fine, mapped *m, abb
   p->paths = map_buffer(m, nodes->paths, GL_MAP_READ_BIT);
   p->warp = map_buffer(m, pass->map->views->warps, GL_MAP_READ_BIT);
   if (p->tint_count > 0) p->tints = map_buffer(m, trace->spectra->tints, GL_MAP_READ_BIT);
-  if (!m->whole) return 0;
+  if (!m->whole) return;
   p->photons = (const abbe_path_photon *)(const void *)(photons + ABBE_PHOTON_HEADER);
   p->warp += p->light * ABBE_WARP_STEPS;
   if (p->tint_count > 0) p->tints += tints;
   if (fine) p->pairs += ABBE_GPU_LIST_HEADER / sizeof *p->pairs;
   p->paths += ABBE_GPU_LIST_HEADER / sizeof *p->paths;
-  return p->paths[-(ptrdiff_t)(ABBE_GPU_LIST_HEADER / sizeof *p->paths)];
+  p->count = p->paths[-(ptrdiff_t)(ABBE_GPU_LIST_HEADER / sizeof *p->paths)];
 }
 
 /* On the processor's own threads, which need no list and no atomics. */
@@ -264,10 +264,10 @@ static abbe_result deposit_here(abbe_deposit_pass *pass, size_t light, const abb
         (int)abbe_spectral_tables_node(scene_of(pass)->plan->desc.wavelengths, nodes, k);
   paths.coarse_node = coarse_node;
   sums.word = map_buffer(&m, pass->map->sums, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
+  map_paths(pass, b->set == ABBE_TRACE_REFINED, &m, &paths);
   const abbe_splat_source source = {.list = abbe_path_splats_list,
                                     .from = &paths,
-                                    .count =
-                                        map_paths(pass, b->set == ABBE_TRACE_REFINED, &m, &paths),
+                                    .count = paths.count,
                                     .most = abbe_path_splats_most(&paths)};
   abbe_result result = ABBE_OK;
   if (m.whole) result = abbe_splat_sums_add(&sums, &source, entry, goes_on, gpu, error);

@@ -7,7 +7,7 @@
 #define SEGMENT 2.0f
 #define EVEN 0.25f
 #define LEAST_LEFT 1e-4f
-enum { MAX_ACROSS = 12, MOST_PARTS = 16, TILE_BITS = 80, PAIR_INTERVALS = 8 };
+enum { MAX_ACROSS = 12, MOST_PARTS = 16, TILE_BITS = 80, PAIR_INTERVALS = 8, AHEAD = 4 };
 
 static v3 interface_normal(uint32_t bits) {
   const float x = (float)(bits >> 11 & 2047u) / 2046.0f * 2 - 1,
@@ -369,10 +369,22 @@ size_t abbe_path_splats_most(const abbe_path_splats *p) {
   return (size_t)(spans + 2) * (size_t)(2 * p->steps);
 }
 
+/* Of a path that is laid soon, and of its photon: they lie far apart. */
+static void fetch(const abbe_path_splats *p, uint32_t listed) {
+  const photon_path path = path_at(p, listed);
+  const size_t nodes = (size_t)(p->fine_nodes > 0 ? p->fine_nodes : p->sample_count);
+  const char *hits = (const char *)(p->node_hits + 2 * path.hit_first);
+  for (size_t i = 0; i < nodes * 2 * sizeof *p->hits; i += 64) __builtin_prefetch(hits + i);
+  __builtin_prefetch(p->node_signatures + path.hit_first * p->signature_words);
+  __builtin_prefetch(p->signatures + path.coarse_first * p->signature_words);
+  __builtin_prefetch(path.photon);
+}
+
 SIDE_BY_SIDE __attribute__((flatten)) size_t
 abbe_path_splats_list(const void *paths, size_t i, uint32_t *splats, int64_t entry[3]) {
   const abbe_path_splats *p = paths;
   photon_path path = path_at(p, p->paths[i]);
+  fetch(p, p->paths[i + AHEAD < p->count ? i + AHEAD : i]);
   float own[3] = {0, 0, 0};
   splat_list to = {.word = splats};
   const reference r = reference_of(p, &path);

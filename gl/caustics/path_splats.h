@@ -22,6 +22,7 @@ typedef struct abbe_path_splats {
   const abbe_path_photon *photons;
   const int *coarse_node; /* the wavelength of each of the coarse set */
   float tile[ABBE_RECEIVER_TILES][ABBE_TILE_FLOATS], view[24]; /* view: the map's */
+  size_t count;                                                /* paths */
   size_t light, refractors, slots, stride, signature_words, tint_count, interval_texels;
   size_t table_first; /* rows of `intervals` before those of these nodes */
   int grid[2], map_size, map_levels, warp_steps, steps;
