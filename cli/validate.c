@@ -179,7 +179,7 @@ static const struct argp parser = {
     .parser = parse,
     .doc = "Holds the reference tracer against optics that is known in closed form or by "
            "quadrature, a row an answer: exact, traced, error, tolerance and its reason. Ends "
-           "with 3 where a row is out of tolerance. All of it takes three minutes of "
+           "with 3 where a row is out of tolerance. All of it takes nine minutes of "
            "processor time.\v"
            "Groups:\n" ABBE_KNOWN_GROUPS(
                GROUP_LINE) "\n"
