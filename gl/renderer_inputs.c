@@ -165,6 +165,8 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
     const abbe_material *material = o->mirror ? o->conductor : o->material;
     MIX(h, o->mirror);
     MIX(h, o->mirror_reflectance);
+    MIX(h, o->axis);
+    MIX(h, o->axis_x);
     MIX(h, o->brushing.facets);
     MIX(h, o->brushing.around);
     MIX(h, o->brushing.axis);
@@ -194,6 +196,8 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
   MIX(h, plan->tinting);
   MIX(h, plan->colouring);
   MIX(h, plan->filmed);
+  MIX(h, plan->crystals);
+  MIX(h, plan->pleochroic);
   return h;
 }
 

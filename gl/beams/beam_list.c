@@ -110,13 +110,13 @@ static void fill_tint(const abbe_beam_list *list, size_t refractor, float *out) 
 }
 
 static abbe_result make_tints(abbe_beam_list *list, abbe_error *error) {
-  const size_t refractors = plan_of(list)->refractor_count, each = intervals_of(list) * PARTS;
+  const size_t surfaces = abbe_plan_surfaces(plan_of(list)), each = intervals_of(list) * PARTS;
   if (plan_of(list)->tints == 0) return ABBE_OK;
-  float *tint = calloc(refractors * each, sizeof *tint);
+  float *tint = calloc(surfaces * each, sizeof *tint);
   if (tint == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the colours of beams");
-  for (size_t r = 0; r < refractors; r++) fill_tint(list, r, tint + r * each);
-  abbe_result result = abbe_gpu_make_buffer(scene_of(list)->gpu, refractors * each * sizeof *tint,
+  for (size_t r = 0; r < surfaces; r++) fill_tint(list, r, tint + r * each);
+  abbe_result result = abbe_gpu_make_buffer(scene_of(list)->gpu, surfaces * each * sizeof *tint,
                                             tint, &list->tints, error);
   free(tint);
   return result;

@@ -54,7 +54,7 @@ static void set_batch(const abbe_deposit_pass *pass, GLuint program, size_t ligh
   const abbe_plan *plan = spectra->scene->plan;
   abbe_gpu *gpu = spectra->scene->gpu;
   const bool fine = b->set == ABBE_TRACE_REFINED;
-  const size_t rows = plan->light_view_count * plan->refractor_count;
+  const size_t rows = plan->light_view_count * abbe_plan_surfaces(plan);
   abbe_gpu_set_int(gpu, program, "light", (int)light);
   abbe_photon_lights_set_grid(pass->map->views, program, light);
   abbe_gpu_set_int(gpu, program, "map_size", (int)plan->desc.map_size);
@@ -71,7 +71,8 @@ static void set_batch(const abbe_deposit_pass *pass, GLuint program, size_t ligh
   abbe_gpu_set_uint(gpu, program, "most", pass->splat_room);
   if (plan->tints > 0)
     abbe_gpu_set_int(gpu, program, "tints_first",
-                     fine ? (int)(spectra->nodes * plan->refractor_count * ABBE_TINT_TEXELS) : 0);
+                     fine ? (int)(spectra->nodes * abbe_plan_surfaces(plan) * ABBE_TINT_TEXELS)
+                          : 0);
 }
 
 static void bind_hits(const abbe_deposit_pass *pass, GLuint program, bool fine) {
@@ -182,14 +183,14 @@ static void tell_batch(const abbe_deposit_pass *pass, size_t light, const abbe_h
   const bool fine = b->set == ABBE_TRACE_REFINED;
   *p = (abbe_path_splats){
       .light = light,
-      .refractors = plan->refractor_count,
+      .refractors = abbe_plan_surfaces(plan),
       .slots = plan->hit_slots,
       .stride = pass->trace->hits.stride,
       .signature_words = abbe_photon_signature_bytes(plan) / sizeof *p->signatures,
       .tint_count = plan->tints,
       .interval_texels = plan->tints > 0 ? 3 : 2,
       .table_first =
-          fine ? plan->light_view_count * plan->refractor_count * (spectra->nodes + 1) : 0,
+          fine ? plan->light_view_count * abbe_plan_surfaces(plan) * (spectra->nodes + 1) : 0,
       .grid = {(int)state->cells[0], (int)state->cells[1]},
       .map_size = (int)plan->desc.map_size,
       .map_levels = (int)pass->map->views->map_levels,

@@ -2,7 +2,7 @@
 // nodes i and i - 1, and its row leads from node i over STEPS steps to node i - 1. Who includes this
 // gives `nodes` and `table_first`.
 
-// [table_first + (light * REFRACTORS + refractor) * (nodes + 1) + i] * (STEPS + 1) + k,
+// [table_first + (light * PART_SURFACES + refractor) * (nodes + 1) + i] * (STEPS + 1) + k,
 // INTERVAL_TEXELS each: XYZ of the interval from node i up to step k, and how far along (0 to 1) that
 // is; then those three times how far along their light is, and the index there; TINTS: then X, Y and Z times
 // what the refractor takes of them by amount.
@@ -29,7 +29,7 @@ Sums sums_at(int row, int step) {
 
 // The first row of the refractor that a path met first.
 int rows_of(uint signature) {
-  return table_first + (light * REFRACTORS + int(signature & 255u)) * (nodes + 1);
+  return table_first + (light * PART_SURFACES + int(signature & 255u)) * (nodes + 1);
 }
 
 int row_of(int rows, int interval) {

@@ -53,8 +53,8 @@ float unevenness(Node n, vec2 depth, int texel) {
 }
 
 Left left_at_nodes(Node a, Node b, int interval) {
-  int at_a = tints_first + TINT_TEXELS * REFRACTORS * clamp(interval, 0, nodes - 1);
-  int at_b = tints_first + TINT_TEXELS * REFRACTORS * max(interval - 1, 0);
+  int at_a = tints_first + TINT_TEXELS * PART_SURFACES * clamp(interval, 0, nodes - 1);
+  int at_b = tints_first + TINT_TEXELS * PART_SURFACES * max(interval - 1, 0);
   vec2 depth_a = depth_of(a.tints, at_a, false), depth_b = depth_of(b.tints, at_b, true);
   float uneven = max(unevenness(a, depth_a, at_a), unevenness(b, depth_b, at_b));
   float needed = clamp(2.0 * uneven / EVEN, 1.0, MOST_PARTS);

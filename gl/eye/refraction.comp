@@ -98,6 +98,9 @@ void copy_all() {
 int refractor;  // that this thread's pixel shows
 
 #include "optical_depth.glsl"
+#ifdef CRYSTALS
+#include "crystals.glsl"
+#endif
 #ifdef WALK
 #ifdef HAZE_BEYOND
 #define KEEPS_HAZE
@@ -216,6 +219,9 @@ void look(ivec2 at);
 void aim_at(ivec2 at) {
   vec3 o, beside;
   refractor = int(texelFetch(eye_owner, at, 0).x) - 1;
+#ifdef CRYSTALS
+  path_place = vec2(at);
+#endif
   band_set = band_set_of(at);
   view_ray(camera_view(), (vec2(at) + 0.5) / eye_samples, o, sight);
   sight_spread = no_spread();

@@ -55,31 +55,61 @@ vec3 seen_outside(vec3 p, vec3 d, Spread spread) {
   return radiance;
 }
 
+// What a path has passed: the depth of its band's parts, or metres.
+#ifdef PLEOCHROIC
+#define Passed Depth
+#define PASSED(metres) ((metres) * wave_attenuation(crystal, refractor, ray.wave, ray.k))
+#define WEIGHT_AFTER(passed) band_left(passed)
+#else
+#define Passed float
+#define PASSED(metres) (metres)
+#ifdef BAND_PARTS
+#define WEIGHT_AFTER(metres) band_left((metres) * per_m)
+#else
+#define WEIGHT_AFTER(metres) (exp(-per_m * (metres)) * band_weight)
+#endif
+#endif
+
+#ifdef CRYSTALS
+int wave;             // that is followed
+float wave_share;  // what of unpolarised light has become it
+#endif
+
 // XYZ of what the band that is taken shows, from interface to interface. What is left when the path ends shows what
 // the rest has shown, in its own colour: what is still inside goes on by as much as from interface to interface. Its
 // loops have two exits, with values of their own for what is used after them: of what the last turn alone has
 // made, lanes that took fewer turns may find another's (Mesa 22's llvmpipe).
 vec3 through(Hit front, vec3 d) {
   vec2 spectrum = refractor_spectrum(refractor);
-  float n = spectrum.x, path_m = 0.0;
+  float n = spectrum.x;
+  Passed path = Passed(0.0);
 #ifdef BAND_PARTS
   Depth per_m = attenuation_of(refractor);
   float least_per_m = least_of(per_m);
-#define WEIGHT_AFTER(metres) band_left((metres) * per_m)
 #else
   float per_m = spectrum.y, least_per_m = per_m;
-#define WEIGHT_AFTER(metres) (exp(-per_m * (metres)) * band_weight)
 #endif
+#ifdef CRYSTALS
+  InnerRay ray = enter_crystal(refractor, wave, front.p, front.n, front.facet, d);
+  wave_share = ray.share;
+  n = length(ray.k);
+#else
   InnerRay ray = InnerRay(front.p, d, front.facet, face_shares(refractor, front.facet, true, -dot(d, front.n), n).y);
+#endif
   vec3 light = vec3(0);
 #ifdef KEEPS_SIGHTS
   sight_tail = vec3(0);
 #endif
+#ifdef CRYSTALS
+  if (ray.share <= 0.0) return light;
+#else
   if (!refract_direction(d, front.n, 1.0 / n, ray.d)) return light;
+#endif
   // Shares of what went in: where nearly all is mirrored, the rest is followed too; and of what is
   // there when it first shows something, because dark bands have their part in the colour.
   float limit = share_limit * ray.share;
-  float left = 0.0, left_m = 0.0;  // share of what is left, and times its path inside
+  float left = 0.0;  // share of what is left, and times its path inside
+  Passed left_path = Passed(0.0);
   vec3 shown = vec3(0);
   Spread within = spread_within(front, n), outside = within;
   for (int order = 0; order < counts.exits;) {
@@ -88,7 +118,7 @@ vec3 through(Hit front, vec3 d) {
     while (order < counts.exits) {
       InnerHit h = next_inner_hit(refractor, ray);
 #ifdef ABSORBING
-      path_m += distance(h.p, ray.p);
+      path += PASSED(distance(h.p, ray.p));
       limit *= shown != vec3(0) ? exp(least_per_m * distance(h.p, ray.p)) : 1.0;
 #endif
 #ifdef KEEPS_SPREAD
@@ -100,11 +130,11 @@ vec3 through(Hit front, vec3 d) {
       float further = ray.share < limit || order == counts.exits ? ray.share : 0.0;
       float given_up = shows ? 0.0 : leaving.share;
       left += given_up + further;
-      left_m += given_up * path_m + further * (path_m + path_m / float(order));
+      left_path += given_up * path + further * (path + path / float(order));
       if (!CHEAP_INTERFACES || shows || ray.share < limit) break;
     }
     if (shows) {
-      vec3 weight = leaving.share * WEIGHT_AFTER(path_m);
+      vec3 weight = leaving.share * WEIGHT_AFTER(path);
       light += weight * (colour_from_rgb * seen_outside(leaving.p, leaving.d, outside));
 #ifdef KEEPS_SIGHTS
       if (sight_waits) note_sight(weight, band_of_all_sets());
@@ -113,7 +143,7 @@ vec3 through(Hit front, vec3 d) {
     }
     if (ray.share < limit) break;
   }
-  vec3 tail = tail_of(shown, left * WEIGHT_AFTER(left_m / max(left, 1e-30)));
+  vec3 tail = tail_of(shown, left * WEIGHT_AFTER(left_path / max(left, 1e-30)));
 #ifdef KEEPS_SIGHTS
   sight_tail = tail;
 #endif

@@ -93,10 +93,12 @@ static abbe_result make_list(abbe_refraction_pass *pass, const abbe_shader_varia
 static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_variant *variant,
                                  abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  char facts[128], refined[128], shares[64];
+  char facts[256], refined[256], shares[128];
   abbe_shader_variant camera = *variant;
   camera.exits = exits_of(pass);
-  const char *shown = shows_receivers(pass) ? "#define SHOWN_RECEIVERS\n" : "";
+  char shown[96];
+  snprintf(shown, sizeof shown, "%s%s", shows_receivers(pass) ? "#define SHOWN_RECEIVERS\n" : "",
+           abbe_shader_variant_waves(scene_of(pass)->plan));
   snprintf(shares, sizeof shares, "%s%s", shown,
            shares_spectrum(pass) ? "#define SHARES_SPECTRUM\n" : "");
   if (refines(pass))

@@ -4,7 +4,29 @@
 vec3 band_light(int band, out float mirrored) {
   take_band(band_set, band - first_band(refractor));
   mirrored = face_shares(refractor, front.facet, true, -dot(sight, front.n), bands[band].weight_n.w).x;
+#ifdef CRYSTALS
+  vec3 light = vec3(0);
+  float passed = 0.0;
+  crystal = crystal_of(refractor);
+  for (wave = 0; wave < 2; wave++) {
+#ifdef KEEPS_SIGHTS
+    uint before = sight_chain;
+#endif
+    light += through(front, sight);
+    passed += wave_share;
+#ifdef KEEPS_SIGHTS
+    weigh_sights(before, sight_tail);
+    sight_tail = vec3(1);
+#endif
+  }
+#ifdef FILMS
+  if (film_on(refractor, front.facet) != BARE) return light;
+#endif
+  mirrored = 1.0 - passed;
+  return light;
+#else
   return through(front, sight);
+#endif
 }
 
 #ifdef REFINED

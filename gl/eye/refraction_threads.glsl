@@ -58,8 +58,7 @@ int pixel_thread = int(gl_LocalInvocationID.x) % PIXEL_THREADS;
 
 // XYZ of what a band shows through the first interface, or off a mirror; or in_mirror: of what it shows
 // reflected by an interface, by unit share; mirrored: the share that is. both: of all that it shows, and nothing is mirrored.
-vec3 band_light(int band, bool in_mirror, bool both, out float mirrored) {
-  take_band(band_set, band - first_band(refractor));
+vec3 path_light(bool in_mirror, bool both, out float mirrored) {
 #ifdef ROUGH
   if (is_rough(first.hit.refractor)) {
     mirrored = 0.0;
@@ -100,6 +99,30 @@ vec3 band_light(int band, bool in_mirror, bool both, out float mirrored) {
   else
     reflected.share = 0.0;
   return shown(w, reflected);
+}
+
+vec3 band_light(int band, bool in_mirror, bool both, out float mirrored) {
+  take_band(band_set, band - first_band(refractor));
+#ifdef CRYSTALS
+  vec3 light = vec3(0);
+  float once;
+  mirrored = 0.0;
+  for (int wave = 0; wave < 2; wave++) {  // half of the light could become either
+    start.wave = wave;
+#ifdef KEEPS_SIGHTS
+    uint before = sight_chain;
+#endif
+    light += 0.5 * path_light(in_mirror, both, once);
+    mirrored += 0.5 * once;
+#ifdef KEEPS_SIGHTS
+    weigh_sights(before, 0.5 * sight_tail);
+    sight_tail = vec3(1);
+#endif
+  }
+  return light;
+#else
+  return path_light(in_mirror, both, mirrored);
+#endif
 }
 
 #ifdef REFINED

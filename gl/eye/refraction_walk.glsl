@@ -4,9 +4,14 @@
 // that has been through 65535 turns of any loops; a segment takes one for each plane and some for
 // the BVH, and a thread takes every PIXEL_THREADS-th band (refraction_threads.glsl).
 #ifdef REFINES
-#define BANDS_AT_ONCE COARSE_BANDS
+#define BANDS_TAKEN COARSE_BANDS
 #else
-#define BANDS_AT_ONCE counts.eye_bands
+#define BANDS_TAKEN counts.eye_bands
+#endif
+#ifdef CRYSTALS
+#define BANDS_AT_ONCE (2 * BANDS_TAKEN)
+#else
+#define BANDS_AT_ONCE BANDS_TAKEN
 #endif
 int most_segments() {
 #ifdef ROUGH

@@ -4,6 +4,18 @@
 // stands the refractor in which a segment is, -1: the air.
 
 #include "photon_tints.glsl"
+#ifdef CRYSTALS
+#include "band_colours.glsl"
+#include "crystals.glsl"
+
+int crystal_node;  // the wavelength that is followed; the camera's first bands are of these
+
+Crystal crystal_of(int r) {
+  int at = counts.crystals + 2 * r;
+  return make_crystal(texelFetch(band_texels, at).xyz, texelFetch(band_texels, at + 1).xyz,
+                      texelFetch(band_texels, counts.crystals + 2 * REFRACTORS + r * BAND_SETS * counts.bands + crystal_node));
+}
+#endif
 
 const int REACHED = 0, REFLECTED = 1, ABSORBED = 2, TRAPPED = 3, MISSED = 4;
 

@@ -129,7 +129,7 @@ float wrong_between(Sample a, Sample b, float misplaced_by, float size, float ph
   float flux_a = a.flux, flux_b = b.flux, left = 1.0;
 #ifdef TINTS
   // What is left of the halves between them, and, to find what changes, of the same path through what tints.
-  int at_a = TINT_TEXELS * REFRACTORS * a.node, at_b = TINT_TEXELS * REFRACTORS * b.node;
+  int at_a = TINT_TEXELS * PART_SURFACES * a.node, at_b = TINT_TEXELS * PART_SURFACES * b.node;
   vec2 above = depth_of(a.tints, at_a, true), below = depth_of(b.tints, at_b, false);
   left = 0.5 * (left_after(above) + left_after(below));
 #endif

@@ -38,7 +38,7 @@ static abbe_result upload_intervals(abbe_photon_spectra *spectra, const float (*
 
 static abbe_result upload_tints(abbe_photon_spectra *spectra, abbe_error *error) {
   const abbe_spectral_tables *t = &spectra->scene->tables;
-  const size_t a_node = spectra->scene->plan->refractor_count * sizeof *t->tints;
+  const size_t a_node = abbe_plan_surfaces(spectra->scene->plan) * sizeof *t->tints;
   if (t->tints == NULL) return ABBE_OK;
   return upload(spectra, t->tints, t->coarse.count * a_node, t->all.count * a_node, &spectra->tints,
                 error);
@@ -101,8 +101,8 @@ static double depth_of(const abbe_photon_spectra *spectra, size_t node, const GL
     const GLuint bits = (word[k] & ~255u) >> 1;
     float amount = 0;
     memcpy(&amount, &bits, sizeof amount);
-    if (r >= plan->refractor_count) continue;
-    const float *part = t->tints[(before + node) * plan->refractor_count + r][0];
+    if (r >= abbe_plan_surfaces(plan)) continue;
+    const float *part = t->tints[(before + node) * abbe_plan_surfaces(plan) + r][0];
     depth += (double)amount * 0.5 * ((double)part[1] + (double)part[2]); /* beside the node */
   }
   return depth;

@@ -97,6 +97,9 @@ PhotonRay ray_of(Task t) {
   float flux;
   ray.reached = photon_start(uv, ray.o, ray.d, ray.front, flux);
   ray.flux = from.flux;
+#ifdef CRYSTALS
+  path_place = floor(0.5 * cell);  // each has neighbours on its path
+#endif
   ray.item = t.item;
   ray.sample_number = t.sample_number;
   ray.wavelength = t.wavelength;
@@ -110,8 +113,8 @@ void load_attenuation(Task t) {
   bool at_low = t.wavelength == t.low, at_high = t.wavelength == t.high;
   int all = counts.nodes == counts.wavelengths ? 0 : counts.nodes;
   int node = set == COARSE ? t.sample_number : all + t.wavelength;
-  below_texel = TINT_TEXELS * REFRACTORS * (at_low ? t.interval : node);
-  above_texel = TINT_TEXELS * REFRACTORS * (at_high ? t.interval + 1 : node);
+  below_texel = TINT_TEXELS * PART_SURFACES * (at_low ? t.interval : node);
+  above_texel = TINT_TEXELS * PART_SURFACES * (at_high ? t.interval + 1 : node);
   below_is_above = at_low;
   above_is_below = at_high;
 }

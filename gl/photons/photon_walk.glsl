@@ -87,19 +87,20 @@ void keep_way(PhotonRay photon, PathState w, float length_m, uint ends, uint own
 }
 #endif
 
-void trace(PhotonRay photon, out Shares entry[5]) {
-  for (int k = 0; k < 5; k++) entry[k] = Shares(0.0);
-  wavelength = photon.wavelength;
-#ifdef FILMS
-  film_row = wavelength;
-#endif
+// share: of the photon's light, as which wave it would enter crystals.
+void follow(PhotonRay photon, float share, int wave, inout uint used, inout Shares entry[5]) {
   vec3 o = photon.o, d = photon.d;
   PathState w = path_from(o, d);
+#ifdef CRYSTALS
+  w.share = share;
+  w.wave = wave;
+  w.path = 977u * uint(wave);
+#endif
   for (int k = 0; k < PENDING; k++) {
     pending[k] = w;
     pending[k].share = 0.0;
   }
-  uint owner = 0u, used = 0u;
+  uint owner = 0u;
   Ends e = Ends(Shares(0.0), Shares(0.0), Shares(0.0), Shares(0.0));
   bool going = photon.reached;
   // From the light to its first interface in a turn of the loop too: what is called twice is compiled twice.
@@ -110,7 +111,7 @@ void trace(PhotonRay photon, out Shares entry[5]) {
     bool met = next_interface(w, h);
     if (arrives) {
       owner = uint(h.hit.refractor);
-      entry[REACHED] = Shares(met ? 1.0 : 0.0);
+      entry[REACHED] += Shares(met ? share : 0.0);
       w.share = met ? w.share : 0.0;
     }
     // What leaves a refractor that touches a receiver lands there.
@@ -153,8 +154,23 @@ void trace(PhotonRay photon, out Shares entry[5]) {
     e.trapped += w.share * left_of(w);
     for (int k = 0; k < PENDING; k++) e.trapped += pending[k].share * left_of(pending[k]);
   }
-  entry[REFLECTED] = e.reflected;
-  entry[ABSORBED] = e.absorbed;
-  entry[TRAPPED] = e.trapped;
-  entry[MISSED] = e.missed;
+  entry[REFLECTED] += e.reflected;
+  entry[ABSORBED] += e.absorbed;
+  entry[TRAPPED] += e.trapped;
+  entry[MISSED] += e.missed;
+}
+
+void trace(PhotonRay photon, out Shares entry[5]) {
+  for (int k = 0; k < 5; k++) entry[k] = Shares(0.0);
+  uint used = 0u;
+  wavelength = photon.wavelength;
+#ifdef FILMS
+  film_row = wavelength;
+#endif
+#ifdef CRYSTALS
+  crystal_node = wavelength;
+  for (int wave = 0; wave < 2; wave++) follow(photon, 0.5, wave, used, entry);
+#else
+  follow(photon, 1.0, 0, used, entry);
+#endif
 }

@@ -105,8 +105,9 @@ void abbe_trace_pass_free(abbe_trace_pass *pass) {
 abbe_result abbe_trace_pass_compile(abbe_trace_pass *pass, const abbe_shader_variant *variant,
                                     abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  abbe_result result =
-      abbe_shader_variant_compute(variant, gpu, "photon_trace.comp", NULL, &pass->program, error);
+  abbe_result result = abbe_shader_variant_compute(variant, gpu, "photon_trace.comp",
+                                                   abbe_shader_variant_waves(scene_of(pass)->plan),
+                                                   &pass->program, error);
   if (result == ABBE_OK)
     result = abbe_shader_variant_compute(variant, gpu, "photon_paths.comp", NULL, &pass->list_paths,
                                          error);

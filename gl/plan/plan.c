@@ -276,7 +276,7 @@ static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc
   plan->receiver_colours = plan->caustics && !plan->volume && plan->receiver_count > 0;
   plan->fills = plan->desc.fill != ABBE_FILL_NONE && plan->desc.wavelengths > 1;
   if (!plan->multi_refractor_paths && (asked == NULL || asked->exits == 0)) {
-    plan->hit_slots += ABBE_RENDER_MAX_EXITS - plan->desc.exits;
+    plan->hit_slots += (plan->crystals ? 2 : 1) * (ABBE_RENDER_MAX_EXITS - plan->desc.exits);
     plan->desc.exits = ABBE_RENDER_MAX_EXITS;
     if (plan->eye_exits < plan->desc.exits) plan->eye_exits = plan->desc.exits;
     rewrite(plan, ABBE_CHOICE_INNER_REFLECTIONS, plan->desc.exits, "exits at most");
@@ -331,7 +331,8 @@ static void combine(abbe_plan *plan) {
                 plan->desc.fill != ABBE_FILL_NONE &&
                 ((apart && !published) || (published && caustics));
   plan->edges = caustics && !published && plan->facets;
-  plan->band_parts = (plan->tinting || plan->colouring) && !published;
+  if (published) plan->crystals = plan->pleochroic = false;
+  plan->band_parts = (plan->tinting || plan->colouring || plan->pleochroic) && !published;
 }
 
 /* Light goes on from rough mirrors through samples of them alone. */

@@ -1,7 +1,6 @@
 #include "gl/scene/shader_variant.h"
 
 #include "colorimetry/reflectance/reflected_light.h"
-#include "gl/scene/spectra/camera_bands.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,6 +20,7 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
                                .shadow_planes = scene->shadow_planes,
                                .one_shadow = p->light_view_count * p->refractor_count == 1,
                                .tints = p->tints,
+                               .part_surfaces = abbe_plan_surfaces(p),
                                .receiver_colours = p->receiver_colours,
                                .shafts = p->shaft_count,
                                .shaft_steps = SHAFT_STEPS,
@@ -66,6 +66,7 @@ static void print_tables(FILE *to, const abbe_shader_variant *v) {
   const size_t reflections = abbe_gpu_spectra_room(v->reflections);
   print_count(to, "LIGHTS", v->lights);
   print_count(to, "REFRACTORS", v->refractors);
+  print_count(to, "PART_SURFACES", v->part_surfaces);
   print_count(to, "RECEIVERS", v->receivers);
   print_flag(to, "MANY_EXITS", v->exits > 8);
   print_room(to, "LIGHT_ROOM", v->lights);
@@ -145,6 +146,12 @@ static void print_photons(FILE *to, const abbe_shader_variant *v) {
   print_count(to, "STEPS", v->steps);
   print_flag(to, "BRIDGE", v->bridge);
   print_flag(to, "DOUBTS_BRIDGES", v->doubts_bridges);
+}
+
+const char *abbe_shader_variant_waves(const abbe_plan *plan) {
+  return plan->pleochroic ? "#define CRYSTALS\n#define PLEOCHROIC\n"
+         : plan->crystals ? "#define CRYSTALS\n"
+                          : "";
 }
 
 char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *more) {

@@ -8,6 +8,7 @@
 #define ABBE_GL_SCENE_SHADER_VARIANT_H
 
 #include "gl/scene/gpu_scene.h"
+#include "gl/scene/spectra/camera_bands.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -54,6 +55,7 @@
   X(map_levels, 0)                                                                                 \
   X(tile_blocks, 0)                                                                                \
   X(chart_sides, 0)                                                                                \
+  X(crystals, abbe_camera_bands_crystals(p))                                                       \
   X(receiver_root, scene->receiver_root)
 
 typedef struct abbe_shader_variant {
@@ -65,7 +67,7 @@ typedef struct abbe_shader_variant {
 #undef ABBE_VARIANT_COUNT
   /* the scene */
   size_t lights, area_lights, refractors, receivers, surfaces, reflections, planes;
-  size_t tints, bvh_stack, shadow_planes;
+  size_t tints, part_surfaces, bvh_stack, shadow_planes;
   bool one_shadow, receiver_colours;
   abbe_volume_kind volume_kind; /* kind of a volume */
   abbe_region_kind volume_region;
@@ -81,6 +83,9 @@ typedef struct abbe_shader_variant {
 } abbe_shader_variant;
 
 void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *out);
+
+/* #defines of programs that follow light as a crystal's two waves (crystals.glsl). */
+const char *abbe_shader_variant_waves(const abbe_plan *plan);
 
 /* The #defines, and `more` after them (may be NULL); malloc'd. NULL: no memory. */
 char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *more);

@@ -15,6 +15,10 @@ struct InnerRay {
   vec3 p, d;
   int facet;    // that p lies on
   float share;  // share of the light that it began with
+#ifdef CRYSTALS
+  int wave, turns;
+  vec3 k;
+#endif
 };
 
 struct InnerHit {
@@ -46,6 +50,43 @@ vec2 face_shares(int r, int facet, bool outside, float cos_i, float n) {
   return vec2(reflected, 1.0 - reflected);
 }
 
+#ifdef CRYSTALS
+Crystal crystal;  // that is followed
+
+// Into refractor r, as one of its waves; its part of unpolarised light. Share 0: it does not enter.
+InnerRay enter_crystal(int r, int wave, vec3 p, vec3 n, int facet, vec3 d) {
+  InnerRay ray = InnerRay(p, d, facet, 0.0, wave, 0, d);
+  bool enters = wave_from(crystal, wave, d - dot(d, n) * n, -n, ray.k, ray.d);
+  vec2 field = field_parts(crystal, wave, ray.k, n);
+  vec3 reflects = face_reflects(-dot(d, n), 1.0, length(ray.k));
+  ray.share = enters ? 0.5 * (1.0 - dot(reflects.xy, field * field)) : 0.0;
+#ifdef FILMS
+  if (film_on(r, facet) != BARE) ray.share = enters ? 0.5 * face_shares(r, facet, true, -dot(d, n), length(ray.k)).y : 0.0;
+#endif
+  return ray;
+}
+
+Outgoing leave(int r, InnerHit h, float n, inout InnerRay ray) {
+  float size = length(ray.k), cos_i = dot(ray.k, h.n) / size;
+  vec3 along = ray.k - dot(ray.k, h.n) * h.n, reflects = face_reflects(cos_i, size, 1.0);
+  vec2 field = field_parts(crystal, ray.wave, ray.k, h.n);
+  float reflected = dot(reflects.xy, field * field), passed = 1.0 - reflected, out2 = 1.0 - dot(along, along);
+#ifdef FILMS
+  if (film_on(r, h.facet) != BARE) {
+    vec2 shares = face_shares(r, h.facet, false, cos_i, size);
+    reflected = shares.x;
+    passed = shares.y;
+    reflects = vec3(reflected);
+  }
+#endif
+  Outgoing o = Outgoing(h.p, h.n, normalize(along + sqrt(max(out2, 0.0)) * h.n), out2 > 0.0 ? ray.share * passed : 0.0);
+  ray.share *= reflected;
+  ray.p = h.p;
+  ray.facet = h.facet;
+  turn_wave(crystal, reflects, h.n, wave_choice(ray.turns++), ray.wave, ray.k, ray.d);
+  return o;
+}
+#else
 // What leaves where the ray meets the interface of refractor r, of index n; the rest goes on in the ray.
 Outgoing leave(int r, InnerHit h, float n, inout InnerRay ray) {
   Outgoing o = Outgoing(h.p, h.n, ray.d, 0.0);
@@ -58,3 +99,4 @@ Outgoing leave(int r, InnerHit h, float n, inout InnerRay ray) {
   ray.d = reflect(ray.d, h.n);
   return o;
 }
+#endif

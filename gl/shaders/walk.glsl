@@ -39,6 +39,10 @@ struct PathState {
 #ifdef KEEPS_PARTS
   Depth depth;  // depth of each part
 #endif
+#ifdef CRYSTALS
+  int wave;  // within a crystal, or what it enters one as (crystals.glsl); and its vector
+  vec3 k;
+#endif
 };
 
 struct Interface {
@@ -76,6 +80,10 @@ PathState path_from(vec3 p, vec3 d) {
 #endif
 #ifdef KEEPS_PARTS
   w.depth = Depth(0.0);
+#endif
+#ifdef CRYSTALS
+  w.wave = 0;
+  w.k = d;
 #endif
   return w;
 }
@@ -117,13 +125,21 @@ void pass_by(inout PathState w, int r, float amount) {
 #ifdef KEEPS_PARTS
 // The camera's path follows what dark bands have, for they have their part in the colour.
 Depth attenuation_of(int r);
+#ifdef PLEOCHROIC
+Depth wave_attenuation(Crystal c, int r, int wave, vec3 k);
+#endif
 #endif
 
 // So many metres inside a refractor.
 void absorb_inside(inout PathState w, float metres) {
   int r = medium_of(w.inside);
-#if defined(KEEPS_TINTS)
+#if defined(KEEPS_TINTS) && defined(PLEOCHROIC)
+  vec3 amount = metres * axis_shares(crystal_of(r), w.wave, w.k);
+  for (int axis = 0; axis < 3; axis++) pass_by(w, r + (axis + 1) * REFRACTORS, amount[axis]);
+#elif defined(KEEPS_TINTS)
   pass_by(w, r, metres);
+#elif defined(PLEOCHROIC)
+  w.depth += metres * wave_attenuation(crystal_of(r), r, w.wave, w.k);
 #elif defined(KEEPS_PARTS)
   w.depth += metres * attenuation_of(r);
 #else
@@ -272,6 +288,10 @@ bool next_interface(PathState w, inout Interface h) {
   return found;
 }
 
+#ifdef CRYSTALS
+#include "crystal_paths.glsl"
+#endif
+
 // Both branches from an interface that w comes to; with what a film absorbs their shares add up to w's. False
 // where the medium does not change: w goes on behind it.
 bool split(inout PathState w, Interface h, out PathState mirrored, out float absorbed) {
@@ -306,7 +326,11 @@ bool split(inout PathState w, Interface h, out PathState mirrored, out float abs
   mirrored.spread = spread_mirrored(w.spread, w.d, n, bend);
   w.spread = spread_refracted(w.spread, w.d, n, bend, eta);
 #endif
-  mirrored.d = keep_side(face_n, reflect(w.d, n));
+  bool bends = false;
+#ifdef CRYSTALS
+  bends = split_waves(after, n, bare, w, mirrored, through, reflected, passes);
+#endif
+  mirrored.d = keep_side(face_n, bends ? mirrored.d : reflect(w.d, n));
   w.d = keep_side(-face_n, through);
   mirrored.share *= reflected;
   w.share = passes ? w.share - mirrored.share - absorbed : 0.0;
@@ -318,70 +342,14 @@ bool split(inout PathState w, Interface h, out PathState mirrored, out float abs
 #endif
   w.path = w.path * 31u + uint(r * 2) + uint(h.hit.facet) * 7u + 1u;
   mirrored.path = w.path + 1u;
+#ifdef CRYSTALS
+  mirrored.path += 977u * uint(mirrored.wave);
+#endif
   return true;
 }
 
 #ifdef ROUGH
-// Rough mirrors on paths of receivers and of the camera. A path goes on by one facet, which lobe_u chooses; of lights it shows what the lobe makes of their light (rough_lamps.glsl). Who includes this sets lobe_u and
-// lobe_ways and clears lobe_width before a path.
-
-const int LOBE_WAYS = 8;
-uniform vec4 rough_facets[REFRACTORS];  // roughness along the grooves and across, 0: smooth; 1: they run
-uniform vec3 rough_axis[REFRACTORS];    // around the axis through the centre, 0: along it
-uniform vec3 rough_centre[REFRACTORS];
-
-#ifndef LOBE_STATE
-#define LOBE_STATE
-vec2 lobe_u;
-float lobe_width;  // root of the solid angle for which the path stands, rad; 0: it met no rough mirror
-float lobe_ways;   // that are taken off a mirror
-#endif
-
-bool is_rough(int r) { return rough_facets[r].x > 0.0; }
-
-// The direction of number k, of LOBE_WAYS; `shift` is of the place: multiples of generalised golden ratios [Roberts2018].
-vec2 lobe_way(int k, float shift) {
-  return fract(vec2(0.7548776662, 0.5698402910) * float(k) + vec2(0.5, 0.25) + vec2(shift, 0.6180339887 * shift));
-}
-
-// That of a number among all that need one.
-vec2 lobe_way_of(uint number) { return vec2(uvec2(3242174889u, 2447445414u) * number >> 8) * exp2(-24.0); }
-
-// Where light comes to a rough mirror: x along the grooves, y across; wo: back along it, in x, y and n.
-struct RoughHit {
-  vec3 x, y, n, wo, face_n;
-  vec2 facets;
-};
-
-RoughHit rough_hit(PathState w, Interface h) {
-  int r = h.hit.refractor;
-  float side = dot(w.d, h.face_n) < 0.0 ? 1.0 : -1.0;
-  vec3 n = side * h.hit.n, face_n = side * h.face_n;
-  if (dot(w.d, n) >= 0.0) n = face_n;
-  vec3 along = rough_facets[r].z > 0.0 ? cross(rough_axis[r], h.hit.p - rough_centre[r]) : rough_axis[r];
-  vec3 x = along - dot(along, n) * n, least = abs(n);
-  vec3 other = least.x < min(least.y, least.z) ? vec3(1, 0, 0) : least.y < least.z ? vec3(0, 1, 0) : vec3(0, 0, 1);
-  x = dot(x, x) > 1e-10 * dot(along, along) ? normalize(x) : normalize(other - dot(other, n) * n);
-  vec3 y = cross(n, x);
-  vec3 wo = normalize(vec3(-dot(w.d, x), -dot(w.d, y), max(-dot(w.d, n), 1e-4)));
-  return RoughHit(x, y, n, wo, face_n, rough_facets[r].xy);
-}
-
-// One branch goes on; returns the share that is not reflected.
-float scatter_off(inout PathState w, Interface h) {
-  RoughHit m = rough_hit(w, h);
-  vec3 facet, wi;
-  float before = w.share;
-  float share = facets_sample(m.facets, m.wo, lobe_u, facet, wi);
-  float pdf = facets_pdf(m.facets, m.wo, wi);
-  w.share *= share;
-  absorb_at_mirror(w, h.hit.refractor, min(dot(m.wo, facet), 1.0));
-  w.d = keep_side(m.face_n, normalize(wi.x * m.x + wi.y * m.y + wi.z * m.n));
-  w.facet = dot(w.d, h.face_n) < 0.0 ? -1 : 1;
-  lobe_width = max(lobe_width, min(inversesqrt(max(pdf, 1e-6) * lobe_ways), 1.0));
-  lobe_u = fract(lobe_u + vec2(0.7548776662, 0.5698402910));
-  return before - w.share;
-}
+#include "rough_paths.glsl"
 #endif
 
 #ifdef MIRRORS

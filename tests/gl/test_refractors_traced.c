@@ -96,6 +96,21 @@ TEST(a_cup_of_water) {
         MAX_PASSES, 1e-3);
 }
 
+#define BESIDE                                                                                     \
+  "- {name: ball, shape: sphere, radius: 0.03, centre: [0.3, 0, 0.2], material: n-bk7}\n"
+
+#define CRYSTAL(stone)                                                                             \
+  "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR                          \
+  "- {name: stone, shape: box, size: [0.12, 0.12, 0.08], transform: [{rotate: {axis: [0, 1, 0], "  \
+  "angle: 10}}, {translate: [0, 0, 0.2]}], material: " stone "}\n"
+
+/* Two caustics; and what absorbs by the light's direction: alone, and beside glass. */
+TEST(both_waves_of_a_crystal) {
+  check(CRYSTAL("calcite, axis: [1, 0.3, 0.7]") BESIDE, 8, 1e-3);
+  check(CRYSTAL("topaz, axes: {x: [1, 0.2, 0], z: [0, 0, 1]}"), 8, 1e-3);
+  check(CRYSTAL("tourmaline-green, axis: [1, 0.2, 0]"), 8, 1e-3);
+}
+
 /* Light comes to the wall from the pane's mirror alone. */
 TEST(the_outside_alone) {
   check("materials: glass.yaml\ncamera: {eye: [-1, -1, 0.5], target: [0, 0, 0.05]}\n"

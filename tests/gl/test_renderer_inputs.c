@@ -172,7 +172,6 @@ TEST(each_field_is_of_its_parts) {
   abbe_scene_free(&e.scene);
 }
 
-/* A pleochroic crystal passes the mean over its axes here, so each axis counts. */
 TEST(absorption_along_each_axis_is_of_the_spectra) {
   edited e = {.desc = {.width = 32, .height = 32, .photons = 32, .map_size = 64}};
   abbe_renderer_inputs before, after;
@@ -191,6 +190,10 @@ TEST(absorption_along_each_axis_is_of_the_spectra) {
   assert_int_equal(abbe_renderer_inputs_differ(&before, &after), SPECTRA | WAY);
   crystal->attenuation_yz[1] = z;
   abbe_spectrum_free(other);
+  e.scene.object[1].axis[0] = 0.6;
+  e.scene.object[1].axis[2] = 0.8;
+  inputs_of(&e, &after);
+  assert_int_equal(abbe_renderer_inputs_differ(&before, &after), SPECTRA | WAY);
   abbe_scene_free(&e.scene);
 }
 

@@ -29,6 +29,7 @@ static bool is_lone_solid(const abbe_scene *scene, const abbe_plan *plan) {
 void abbe_path_limits_choose(const abbe_scene *scene, const abbe_render_desc *asked,
                              abbe_plan *plan) {
   const bool thesis = abbe_method_of(plan->desc.profile)->own_passes;
+  const size_t waves = plan->crystals && !thesis ? 2 : 1;
   char inside[64] = "";
   /* What a view's layers do not show is missed more with every reflection: fewer are worth it. */
   if (thesis || plan->desc.exits == 0)
@@ -43,8 +44,8 @@ void abbe_path_limits_choose(const abbe_scene *scene, const abbe_render_desc *as
   plan->eye_exits = eye_goes_on ? eye_exits(plan) : plan->desc.exits;
   plan->eye_share = plan->desc.energy_share;
   if (!plan->multi_refractor_paths) plan->eye_share = fmin(plan->eye_share, ABBE_PLAN_EYE_SHARE);
-  plan->hit_slots =
-      plan->multi_refractor_paths ? MULTI_REFRACTOR_SLOTS : plan->desc.exits + (thesis ? 0 : 1);
+  plan->hit_slots = plan->multi_refractor_paths ? waves * MULTI_REFRACTOR_SLOTS
+                                                : waves * plan->desc.exits + (thesis ? 0 : 1);
   if (abbe_plan_no_refraction(plan) != NULL)
     abbe_plan_add(plan, ABBE_CHOICE_INNER_REFLECTIONS, "%s", abbe_plan_no_refraction(plan));
   else if (plan->desc.exits == 1)

@@ -172,7 +172,7 @@ void abbe_light_views_reach(const abbe_scene *scene, abbe_plan *plan) {
                                &scene->object[plan->receiver_object[j]]);
   if (plan->caustics || plan->camera_sees_refractor) return;
   plan->dispersive = plan->absorbing = plan->tinting = plan->colouring = false;
-  plan->filmed = false;
+  plan->filmed = plan->crystals = plan->pleochroic = false;
 }
 
 /* Receivers outside the view have tiles. */

@@ -46,11 +46,14 @@ static const abbe_object *object_of(const abbe_scene *scene, const abbe_plan *pl
   return &scene->object[plan->refractor_object[r]];
 }
 
-double abbe_tint_attenuation(const abbe_scene *scene, const abbe_plan *plan, size_t r,
+double abbe_tint_attenuation(const abbe_scene *scene, const abbe_plan *plan, size_t s,
                              double lambda_nm) {
+  const size_t r = s % plan->refractor_count, axes = s / plan->refractor_count;
   const abbe_object *object = object_of(scene, plan, r);
+  const bool along = axes > 0 && !plan->mirror[r] && abbe_material_is_pleochroic(object->material);
   if (!plan->mirror[r])
-    return fmin(abbe_material_attenuation(object->material, lambda_nm) +
+    return fmin((along ? abbe_material_attenuation_along(object->material, (int)axes - 1, lambda_nm)
+                       : abbe_material_attenuation(object->material, lambda_nm)) +
                     abbe_medium_scattering(object->medium, lambda_nm),
                 MOST_PER_M);
   double n = 0, k = 0, reflected = object->mirror_reflectance;
@@ -72,8 +75,23 @@ static bool is_even(const abbe_scene *scene, const abbe_plan *plan, size_t r) {
   return (float)least == (float)most;
 }
 
-int abbe_tint_of(const abbe_scene *scene, const abbe_plan *plan, size_t r) {
+/* Of two indices x and y are alike. */
+static int tint_along(const abbe_scene *scene, const abbe_plan *plan, size_t r, size_t axis) {
   const abbe_object *object = object_of(scene, plan, r);
+  if (axis == 1 && object->material->attenuation_yz[0] == NULL) axis = 0;
+  for (size_t k = 0; k < r; k++) {
+    const abbe_object *other = object_of(scene, plan, k);
+    if (other->material == object->material && other->medium == object->medium)
+      return tint_along(scene, plan, k, axis);
+  }
+  return (int)(r + (axis + 1) * plan->refractor_count);
+}
+
+int abbe_tint_of(const abbe_scene *scene, const abbe_plan *plan, size_t s) {
+  const size_t r = s % plan->refractor_count, axes = s / plan->refractor_count;
+  const abbe_object *object = object_of(scene, plan, r);
+  if (plan->pleochroic && !plan->mirror[r] && abbe_material_is_pleochroic(object->material))
+    return axes > 0 ? tint_along(scene, plan, r, axes - 1) : -1;
   for (size_t k = 0; k < r; k++) {
     const abbe_object *other = object_of(scene, plan, k);
     if (plan->mirror[k] == plan->mirror[r] && other->material == object->material &&
@@ -86,8 +104,8 @@ int abbe_tint_of(const abbe_scene *scene, const abbe_plan *plan, size_t r) {
 
 size_t abbe_tint_count(const abbe_scene *scene, const abbe_plan *plan) {
   size_t count = 0;
-  for (size_t r = 0; r < plan->refractor_count && count < ABBE_MOST_TINTS; r++)
-    count += abbe_tint_of(scene, plan, r) == (int)r;
+  for (size_t s = 0; s < abbe_plan_surfaces(plan) && count < ABBE_MOST_TINTS; s++)
+    count += abbe_tint_of(scene, plan, s) == (int)s;
   return count;
 }
 
@@ -115,20 +133,28 @@ static double extrapolated_share(const abbe_scene *scene, const abbe_material *m
   return most;
 }
 
-/* A crystal is taken for glass of its ordinary index. */
-static void note_birefringence(const abbe_material *material, double lambda_nm, abbe_plan *plan) {
-  double n_o = 0, n_e = 0;
-  if (!abbe_material_is_uniaxial(material) ||
-      abbe_material_n(material, lambda_nm, &n_o, NULL) != ABBE_OK ||
-      abbe_material_n_extraordinary(material, lambda_nm, &n_e, NULL) != ABBE_OK)
-    return;
-  abbe_plan_note(plan,
-                 "%s: double refraction is left out; it has its ordinary index alone, and the "
-                 "extraordinary one is %.4f %s at %g nm",
-                 material->name, fabs(n_e - n_o), n_e < n_o ? "lower" : "higher", lambda_nm);
+/* Published methods and the light of pinholes take a crystal for glass of its ordinary or middle
+ * index, which absorbs by the mean over its axes. */
+static const char *what_is_drawn(const abbe_plan *plan) {
+  return abbe_method_of(plan->desc.profile)->own_passes
+             ? "its ordinary or middle index alone is drawn, and the mean absorption over its axes"
+         : plan->desc.transport == ABBE_TRANSPORT_PINHOLE
+             ? "the camera sees both waves; the light on receivers has the ordinary or middle "
+               "index alone, and the mean absorption over its axes"
+             : "both waves are drawn; where one is reflected inside, one of the two goes on that "
+               "it becomes";
 }
 
-/* One of three indices is taken for glass of its middle one. */
+static void note_birefringence(const abbe_material *m, double lambda_nm, abbe_plan *plan) {
+  double n[3];
+  if (!abbe_material_is_crystal(m)) return;
+  for (int axis = 0; axis < 3; axis++)
+    if (abbe_material_n_along(m, axis, lambda_nm, &n[axis], NULL) != ABBE_OK) return;
+  abbe_plan_note(plan, "%s: double refraction by %.4f at %g nm: %s", m->name, fabs(n[2] - n[0]),
+                 lambda_nm, what_is_drawn(plan));
+}
+
+/* How three indices lie in the scene. */
 static void note_biaxial(const abbe_object *object, double low, double high, abbe_plan *plan) {
   const abbe_material *m = object->material;
   double n[3], twice[2];
@@ -144,8 +170,8 @@ static void note_biaxial(const abbe_object *object, double low, double high, abb
   abbe_plan_note(
       plan,
       "%s: biaxial, %s; 2V about z is %.1f degrees at %g nm, %.1f and %.1f at the ends; x "
-      "is %.2f %.2f %.2f, z %.2f %.2f %.2f; its middle index alone is drawn, the others "
-      "are %.4f lower and %.4f higher",
+      "is %.2f %.2f %.2f, z %.2f %.2f %.2f; the outer indices are %.4f lower and %.4f higher than "
+      "the middle one",
       m->name, middle < 90 ? "positive" : "negative", middle, (low + high) / 2, twice[0], twice[1],
       object->axis_x[0], object->axis_x[1], object->axis_x[2], object->axis[0], object->axis[1],
       object->axis[2], n[1] - n[0], n[2] - n[1]);
@@ -178,7 +204,6 @@ static void note_axes(const abbe_object *object, double lambda_nm, abbe_plan *pl
                    object->name, object->axes_turned * 180 / ABBE_PI);
 }
 
-/* A pleochroic crystal absorbs by the mean over its axes. */
 static void note_pleochroism(const abbe_material *material, abbe_plan *plan) {
   enum { MM = 5 };
   if (!abbe_material_is_pleochroic(material)) return;
@@ -188,16 +213,14 @@ static void note_pleochroism(const abbe_material *material, abbe_plan *plan) {
   if (abbe_material_is_biaxial(material)) {
     abbe_plan_note(plan,
                    "%s: pleochroic; %d mm pass CIELAB %.0f %.0f %.0f of fields along x, %.0f %.0f "
-                   "%.0f along y and %.0f %.0f %.0f along z, at most %.0f apart; the mean over its "
-                   "axes is drawn, and 'abbe trace' follows each wave",
+                   "%.0f along y and %.0f %.0f %.0f along z, at most %.0f apart",
                    material->name, MM, o[0], o[1], o[2], y[0], y[1], y[2], e[0], e[1], e[2],
                    p.largest);
     return;
   }
   abbe_plan_note(plan,
                  "%s: pleochroic; %d mm pass CIELAB %.0f %.0f %.0f of its ordinary ray and %.0f "
-                 "%.0f %.0f of the extraordinary one, %.0f apart; the mean over its axes is drawn, "
-                 "and 'abbe trace' follows each",
+                 "%.0f %.0f of the extraordinary one, %.0f apart",
                  material->name, MM, o[0], o[1], o[2], e[0], e[1], e[2], p.largest);
 }
 
@@ -238,6 +261,8 @@ abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_mate
   if ((float)range.least_n != (float)range.most_n) plan->dispersive = true;
   if (range.least_per_m != range.most_per_m) plan->tinting = true;
   if (range.most_per_m > 0) plan->absorbing = true;
+  if (abbe_material_is_crystal(material)) plan->crystals = true;
+  if (abbe_material_is_pleochroic(material)) plan->pleochroic = true;
   bool noted = false;
   for (size_t i = 0; i < plan->refractor_count && !noted; i++)
     noted = scene->object[plan->refractor_object[i]].material == material;
@@ -376,19 +401,6 @@ static void note_film(const abbe_object *object, const abbe_coating *coating, bo
                    object->name, thinnest);
 }
 
-/* The tracer fills volumes, and its crystals absorb by the direction of light. */
-static void note_volume(const abbe_scene *scene, abbe_plan *plan) {
-  for (size_t i = 0; plan->volume && i < plan->refractor_count; i++) {
-    const abbe_material *m = scene->object[plan->refractor_object[i]].material;
-    if (!plan->mirror[i] && abbe_material_is_pleochroic(m))
-      abbe_plan_note(plan,
-                     "%s: its caustic volume absorbs by the direction of light, as 'abbe trace' "
-                     "does, and the picture by the mean over the axes: a ruby's caustic has 623 nm "
-                     "for 599, an emerald's 542 for 521",
-                     m->name);
-  }
-}
-
 /* Thinner than a quarter of its diagonal between two parallel faces. */
 static bool is_pane(const abbe_object *o) {
   const abbe_exact *e = &o->exact;
@@ -473,7 +485,6 @@ static void note_covered_films(const abbe_scene *scene, const abbe_object *objec
 }
 
 void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan) {
-  note_volume(scene, plan);
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *o = &scene->object[i];
     for (size_t k = 0; o->coatings != NULL && k < o->coatings->count; k++)

@@ -41,14 +41,15 @@ void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan);
 /* Stuffs whose amounts a hit keeps. */
 enum { ABBE_MOST_TINTS = 3 };
 
-/* Attenuation by refractor or mirror r, by amount; at most what leaves nothing, so that sums stay
- * finite. */
-double abbe_tint_attenuation(const abbe_scene *scene, const abbe_plan *plan, size_t r,
+/* Attenuation by surface s (abbe_plan_surfaces), by amount; at most what leaves nothing, so that
+ * sums stay finite. */
+double abbe_tint_attenuation(const abbe_scene *scene, const abbe_plan *plan, size_t s,
                              double lambda_nm);
 
-/* The first of the plan's refractors and mirrors that is of the same stuff as r; -1: it absorbs all
- * wavelengths alike. */
-int abbe_tint_of(const abbe_scene *scene, const abbe_plan *plan, size_t r);
+/* The first of the plan's surfaces that is of the same stuff as s; -1: it absorbs all wavelengths
+ * alike, or is a pleochroic refractor's mean. A metre of a pleochroic crystal is shared among its
+ * axes (crystals.glsl). */
+int abbe_tint_of(const abbe_scene *scene, const abbe_plan *plan, size_t s);
 /* The number of all stuffs, ABBE_MOST_TINTS at the most. */
 size_t abbe_tint_count(const abbe_scene *scene, const abbe_plan *plan);
 

@@ -30,6 +30,10 @@ double abbe_plan_haze_edge(const abbe_render_desc *desc, int k) {
   return desc->min_nm + (desc->max_nm - desc->min_nm) * k / ABBE_PLAN_HAZE_BANDS;
 }
 
+size_t abbe_plan_surfaces(const abbe_plan *plan) {
+  return plan->refractor_count * (plan->pleochroic ? 4 : 1);
+}
+
 size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
   /* What lies between these is followed from the interface where light leaves
    * (outgoing_segment.glsl). */

@@ -211,6 +211,8 @@ typedef struct abbe_plan {
   bool tinting;    /* its attenuation varies */
   bool colouring;  /* some mirror's reflectance varies */
   bool filmed;     /* some refractor has films on faces that are drawn */
+  bool crystals;   /* it has several indices: the camera follows both waves */
+  bool pleochroic; /* it attenuates by the direction of the light's field */
   bool tinted_air; /* the air's absorption or scattering varies */
 
   abbe_plan_inside inside;
@@ -242,6 +244,10 @@ typedef struct abbe_plan {
 } abbe_plan;
 
 void abbe_plan_free(abbe_plan *plan);
+
+/* Refractors and mirrors; where some are pleochroic, after them all for fields along x, then y,
+ * then z. */
+size_t abbe_plan_surfaces(const abbe_plan *plan);
 
 /* How many wavelengths every photon is traced at. Where its hits need more it takes more, up to all
  * the plan's. */

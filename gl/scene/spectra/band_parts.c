@@ -22,20 +22,33 @@ double abbe_usual_path(const abbe_object *object) {
   return fmax(area > 0 ? 1.3 * 4 * fabs(volume) / area : 0, 1e-12);
 }
 
+/* A pleochroic refractor by its axes, of two indices x and z, and any other surface once. */
+static bool splits(const abbe_scene *scene, const abbe_plan *plan, size_t s) {
+  const size_t r = s % plan->refractor_count, axes = s / plan->refractor_count;
+  const abbe_material *m = scene->object[plan->refractor_object[r]].material;
+  if (!plan->pleochroic || plan->mirror[r] || !abbe_material_is_pleochroic(m)) return axes == 0;
+  return axes > 0 && (axes != 2 || m->attenuation_yz[0] != NULL);
+}
+
 abbe_result abbe_band_steps_make(const abbe_scene *scene, const abbe_plan *plan, size_t count,
                                  abbe_band_steps *out, abbe_error *error) {
-  const size_t surfaces = plan->refractor_count;
+  const size_t refractors = plan->refractor_count, surfaces = abbe_plan_surfaces(plan);
   *out = (abbe_band_steps){.count = count,
                            .surfaces = surfaces,
                            .xyz = calloc(count + 1, sizeof *out->xyz),
                            .depth = calloc(surfaces * count + 1, sizeof *out->depth),
                            .path_m = calloc(surfaces + 1, sizeof *out->path_m),
+                           .splits = calloc(surfaces + 1, sizeof *out->splits),
                            .mean = calloc(surfaces + 1, sizeof *out->mean)};
-  if (out->xyz == NULL || out->depth == NULL || out->path_m == NULL || out->mean == NULL)
+  if (out->xyz == NULL || out->depth == NULL || out->path_m == NULL || out->splits == NULL ||
+      out->mean == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
-  for (size_t r = 0; r < surfaces; r++)
-    out->path_m[r] =
-        plan->mirror[r] ? 0 : abbe_usual_path(&scene->object[plan->refractor_object[r]]);
+  for (size_t r = 0; r < surfaces; r++) {
+    out->splits[r] = splits(scene, plan, r);
+    out->path_m[r] = r >= refractors   ? out->path_m[r % refractors]
+                     : plan->mirror[r] ? 0
+                                       : abbe_usual_path(&scene->object[plan->refractor_object[r]]);
+  }
   return ABBE_OK;
 }
 
@@ -43,17 +56,24 @@ void abbe_band_steps_free(abbe_band_steps *steps) {
   free(steps->xyz);
   free(steps->depth);
   free(steps->path_m);
+  free(steps->splits);
   free(steps->mean);
   *steps = (abbe_band_steps){0};
 }
 
-static abbe_result depth_of(const abbe_object *object, bool mirror, double path_m, double lambda_nm,
-                            double *out, abbe_error *error) {
+/* Of surface s of the steps, at a wavelength. */
+static abbe_result depth_of(const abbe_scene *scene, const abbe_plan *plan, size_t s, double path_m,
+                            double lambda_nm, double *out, abbe_error *error) {
+  const size_t r = s % plan->refractor_count, axes = s / plan->refractor_count;
+  const abbe_object *object = &scene->object[plan->refractor_object[r]];
   double n = 0, k = 0, reflected = object->mirror_reflectance;
   abbe_result result = ABBE_OK;
-  if (!mirror) {
-    *out = path_m * (abbe_material_attenuation(object->material, lambda_nm) +
-                     abbe_medium_scattering(object->medium, lambda_nm));
+  if (!plan->mirror[r]) {
+    const bool along = axes > 0 && abbe_material_is_pleochroic(object->material);
+    *out = path_m *
+           ((along ? abbe_material_attenuation_along(object->material, (int)axes - 1, lambda_nm)
+                   : abbe_material_attenuation(object->material, lambda_nm)) +
+            abbe_medium_scattering(object->medium, lambda_nm));
   } else {
     if (object->conductor != NULL)
       result = abbe_material_nk(object->conductor, lambda_nm, &n, &k, error);
@@ -74,9 +94,8 @@ abbe_result abbe_band_steps_fill(abbe_band_steps *steps, const abbe_scene *scene
     const double a = from_nm + step * (double)(i - first);
     abbe_weights_range_xyz(light, a, a + step, steps->xyz[i]);
     for (size_t r = 0; r < steps->surfaces && result == ABBE_OK; r++)
-      result =
-          depth_of(&scene->object[plan->refractor_object[r]], plan->mirror[r], steps->path_m[r],
-                   a + 0.5 * step, &steps->depth[r * steps->count + i], error);
+      result = depth_of(scene, plan, r, steps->path_m[r], a + 0.5 * step,
+                        &steps->depth[r * steps->count + i], error);
   }
   return result;
 }
@@ -124,7 +143,7 @@ static void settle(const abbe_band_steps *s, const abbe_band_share *band, unsign
   enum { TURNS = 6 };
   for (int turn = 0; turn < TURNS; turn++) {
     for (size_t r = 0; r < s->surfaces; r++)
-      for (unsigned p = 0; p < parts; p++) {
+      for (unsigned p = 0; p < parts && s->splits[r]; p++) {
         const abbe_band_share one = {band->first, band->end, band->share, part, p};
         s->mean[r][p] = mean_of(s, &one, r);
       }
@@ -133,7 +152,7 @@ static void settle(const abbe_band_steps *s, const abbe_band_share *band, unsign
       for (unsigned p = 0; p < parts; p++) {
         double square = 0;
         for (size_t r = 0; r < s->surfaces; r++)
-          square += pow(taken_at(s, r, band->first + i) - s->mean[r][p], 2);
+          if (s->splits[r]) square += pow(taken_at(s, r, band->first + i) - s->mean[r][p], 2);
         if (!(square < nearest)) continue;
         nearest = square;
         part[i] = (unsigned char)p;
@@ -152,6 +171,7 @@ void abbe_band_parts_split(const abbe_band_steps *steps, const abbe_band_share *
     unsigned widest = 0;
     for (unsigned p = 0; p < parts; p++)
       for (size_t r = 0; r < steps->surfaces; r++) {
+        if (!steps->splits[r]) continue;
         const abbe_band_share one = {band->first, band->end, band->share, part, p};
         double mean;
         const double variance = variance_of(steps, &one, r, &mean);

@@ -22,16 +22,18 @@ double abbe_usual_path(const abbe_object *object);
 /* Optical depth of what is opaque: its exponential is 0 in floats, and sums of it stay finite. */
 #define ABBE_BAND_MOST_DEPTH 1e4
 
-/* Steps of a light's spectrum, and what the plan's refractors and mirrors take of each. */
+/* Steps of a light's spectrum, and what the plan's refractors and mirrors take of each; where some
+ * are pleochroic, then what all take of fields along x, then along y, then along z. */
 typedef struct abbe_band_steps {
   size_t count, surfaces;
   double (*xyz)[3]; /* [count] CIE XYZ of the light */
   double *depth;  /* [surfaces][count] optical depth of path_m, or of one reflection straight on */
   double *path_m; /* [surfaces] a usual path inside, m; 0 of a mirror */
+  bool *splits; /* [surfaces] what it takes counts where parts are made: not what repeats others */
   double (*mean)[ABBE_BAND_PARTS]; /* [surfaces] of parts while they are found */
 } abbe_band_steps;
 
-/* Makes steps for so many of the plan's surfaces. ABBE_NO_MEMORY; abbe_band_steps_free also
+/* Makes so many steps for the plan's surfaces. ABBE_NO_MEMORY; abbe_band_steps_free also
  * then. */
 abbe_result abbe_band_steps_make(const abbe_scene *scene, const abbe_plan *plan, size_t count,
                                  abbe_band_steps *out, abbe_error *error);

@@ -1,7 +1,9 @@
 #include "gl/scene/spectra/camera_bands.h"
 
+#include "base/maths.h"
 #include "colorimetry/rgb_space.h"
 #include "colorimetry/upsampling.h"
+#include "gl/device/float4.h"
 #include "gl/scene/spectra/band_parts.h"
 
 #include <math.h>
@@ -21,12 +23,20 @@ size_t abbe_camera_bands_count(size_t wavelengths, size_t *levels) {
   return count;
 }
 
-size_t abbe_camera_bands_texels(const abbe_plan *plan) {
+/* Bands of all sets of a refractor. */
+static size_t bands_apart(const abbe_plan *plan) {
   size_t levels;
-  const size_t all =
-      ABBE_CAMERA_BAND_SETS * abbe_camera_bands_count(plan->desc.wavelengths, &levels);
-  const size_t parts = plan->refractor_count * ABBE_PART_TEXELS + ABBE_PART_LIGHT_TEXELS;
-  return all * (ABBE_BAND_COLOUR_TEXELS + (plan->band_parts ? parts : 0));
+  return ABBE_CAMERA_BAND_SETS * abbe_camera_bands_count(plan->desc.wavelengths, &levels);
+}
+
+size_t abbe_camera_bands_crystals(const abbe_plan *plan) {
+  const size_t parts = abbe_plan_surfaces(plan) * ABBE_PART_TEXELS + ABBE_PART_LIGHT_TEXELS;
+  return bands_apart(plan) * (ABBE_BAND_COLOUR_TEXELS + (plan->band_parts ? parts : 0));
+}
+
+size_t abbe_camera_bands_texels(const abbe_plan *plan) {
+  const size_t crystals = plan->crystals ? plan->refractor_count * (2 + bands_apart(plan)) : 0;
+  return abbe_camera_bands_crystals(plan) + crystals;
 }
 
 bool abbe_camera_bands_refine(const abbe_plan *plan) {
@@ -234,10 +244,48 @@ static abbe_result join_indices(const band_set *s, const abbe_scene *scene, cons
   return ABBE_OK;
 }
 
+/* Means over the band's own wavelengths of the indices, as crystals' texels have them. */
+static abbe_result join_crystal(const band_set *s, const abbe_scene *scene, const level_band *b,
+                                size_t r, float texel[4], abbe_error *error) {
+  const abbe_material *m = scene->object[s->plan->refractor_object[r]].material;
+  double all = 0, square[3] = {0, 0, 0};
+  for (size_t i = b->i * b->joined; i < least((b->i + 1) * b->joined, s->tables->all.count); i++) {
+    double weight = 1e-9;
+    for (int c = 0; c < 3; c++) weight += s->weight[i][c];
+    all += weight;
+    for (int axis = 0; axis < 3; axis++) {
+      double n;
+      ABBE_TRY(abbe_material_n_along(m, axis, s->lambda_nm[i], &n, error));
+      square[axis] += weight / (n * n);
+    }
+  }
+  const double x_z = square[0] - square[2], y_z = square[1] - square[2];
+  const double cos2 = x_z != 0 ? fmin(fmax(y_z / x_z, 0), 1) : 1;
+  texel[0] = (float)(0.5 * (square[0] + square[2]) / all);
+  texel[1] = (float)(0.5 * x_z / all);
+  texel[2] = (float)sqrt(1 - cos2);
+  texel[3] = (float)sqrt(cos2);
+  return ABBE_OK;
+}
+
+static void place_axes(const abbe_scene *scene, const abbe_plan *plan, float (*texel)[4]) {
+  for (size_t r = 0; r < plan->refractor_count; r++) {
+    const abbe_object *o = &scene->object[plan->refractor_object[r]];
+    if (o->material == NULL || !abbe_material_is_crystal(o->material)) continue;
+    const bool biaxial = abbe_material_is_biaxial(o->material);
+    double other[3] = {0}, x[3];
+    other[fabs(o->axis[0]) < 0.6 ? 0 : 1] = 1;
+    abbe_vector_cross(o->axis, other, x); /* any will do of two indices */
+    abbe_vector_normalise(x);
+    abbe_float4_store(o->axis, 0, texel[2 * r]);
+    abbe_float4_store(biaxial ? o->axis_x : x, 0, texel[2 * r + 1]);
+  }
+}
+
 /* The surface for a depth by the usual path, or by one reflection: attenuation, or the factor that
  * makes it so. */
 static double surface_of(const band_set *s, size_t r, const abbe_camera_band *band, double depth) {
-  if (!s->plan->mirror[r]) return depth / s->steps.path_m[r];
+  if (!s->plan->mirror[r % s->plan->refractor_count]) return depth / s->steps.path_m[r];
   return abbe_mirror_factor((double)band->surface[2], (double)band->surface[3], exp(-depth));
 }
 
@@ -262,7 +310,8 @@ static void fill_parts(band_set *s, const level_band *b, abbe_camera_band *band,
       s->share[i - from] = share_of(b, k);
   const abbe_band_share whole = {from, to, s->share, NULL, 0};
   abbe_band_parts_split(&s->steps, &whole, s->part);
-  for (size_t r = 0; r < s->steps.surfaces; r++)
+  const size_t refractors = s->plan->refractor_count;
+  for (size_t r = 0; r < refractors; r++)
     band[r * apart].surface[s->plan->mirror[r] ? 1 : 0] =
         (float)surface_of(s, r, &band[r * apart], abbe_band_share_depth(&s->steps, &whole, r));
   for (unsigned p = 0; p < ABBE_BAND_PARTS; p++) {
@@ -273,8 +322,9 @@ static void fill_parts(band_set *s, const level_band *b, abbe_camera_band *band,
     for (size_t r = 0; r < s->steps.surfaces; r++) {
       const double depth = abbe_band_share_depth(&s->steps, &one, r);
       const abbe_band_share *of = depth < 0 ? &whole : &one;
-      texel[ABBE_PART_TEXELS * r * apart + p / 4][p % 4] =
-          (float)surface_of(s, r, &band[r * apart], abbe_band_share_depth(&s->steps, of, r));
+      const size_t light_texels = r < refractors ? 0 : ABBE_PART_LIGHT_TEXELS * apart;
+      texel[light_texels + ABBE_PART_TEXELS * r * apart + p / 4][p % 4] = (float)surface_of(
+          s, r, &band[r % refractors * apart], abbe_band_share_depth(&s->steps, of, r));
     }
   }
 }
@@ -285,6 +335,7 @@ typedef struct band_place {
   size_t apart;
   float (*colour)[4];
   float (*texel)[4], (*light)[4]; /* NULL: no parts */
+  float (*crystal)[4];            /* NULL: none is one */
 } band_place;
 
 static abbe_result fill_level(band_set *s, const abbe_scene *scene, level_band level,
@@ -297,6 +348,9 @@ static abbe_result fill_level(band_set *s, const abbe_scene *scene, level_band l
       result = join_indices(s, scene, &level, r, &band[r * to->apart], error);
       band[r * to->apart].surface[s->plan->mirror[r] ? 1 : 0] = (float)even_surface(s, scene, r);
     }
+    for (size_t r = 0; to->crystal != NULL && r < s->plan->refractor_count; r++)
+      if (!s->plan->mirror[r] && result == ABBE_OK)
+        result = join_crystal(s, scene, &level, r, to->crystal[r * to->apart + level.i], error);
     fill_colour(s, &level, band->weight_n, to->colour + ABBE_BAND_COLOUR_TEXELS * level.i);
     if (result == ABBE_OK && to->texel != NULL)
       fill_parts(s, &level, band, to->apart, to->texel + ABBE_PART_TEXELS * level.i,
@@ -316,6 +370,7 @@ static abbe_result fill_set(band_set *s, const abbe_scene *scene, bool shares, b
     to.colour += ABBE_BAND_COLOUR_TEXELS * level.count;
     if (to.texel != NULL) to.texel += ABBE_PART_TEXELS * level.count;
     if (to.texel != NULL) to.light += ABBE_PART_LIGHT_TEXELS * level.count;
+    if (to.crystal != NULL) to.crystal += level.count;
     level.count = (level.count + 1) / 2;
     level.joined *= 2;
     result = fill_level(s, scene, level, &to, error);
@@ -334,6 +389,7 @@ abbe_result abbe_camera_bands_fill(const abbe_scene *scene, const abbe_plan *pla
   abbe_weights_range_make_by(plan->desc.observer, abbe_scene_illuminant(scene), w->edge_nm[0],
                              w->edge_nm[w->count], &light);
   abbe_result result = ABBE_OK;
+  if (plan->crystals) place_axes(scene, plan, texel + abbe_camera_bands_crystals(plan));
   for (int set = 0; set < ABBE_CAMERA_BAND_SETS && result == ABBE_OK; set++) {
     band_set s = {.plan = plan, .tables = tables};
     band_place to = {.band = out + (size_t)set * count,
@@ -345,6 +401,9 @@ abbe_result abbe_camera_bands_fill(const abbe_scene *scene, const abbe_plan *pla
       to.light = parts + ABBE_PART_TEXELS * plan->refractor_count * apart +
                  ABBE_PART_LIGHT_TEXELS * (size_t)set * count;
     }
+    if (plan->crystals)
+      to.crystal = texel + abbe_camera_bands_crystals(plan) + 2 * plan->refractor_count +
+                   (size_t)set * count;
     result = begin(scene, &light, set, &s, error);
     if (result == ABBE_OK) result = fill_set(&s, scene, set > 0, to, error);
     end(&s);

@@ -30,8 +30,13 @@ enum { ABBE_PART_TEXELS = 2, ABBE_PART_LIGHT_TEXELS = 6 };
 
 /* Bands of a set for so many wavelengths, all levels together; *levels: so many. */
 size_t abbe_camera_bands_count(size_t wavelengths, size_t *levels);
-/* Texels of all colours, and of all parts where the plan needs these. */
+/* Texels of all colours, of all parts where the plan needs these, and of crystals. */
 size_t abbe_camera_bands_texels(const abbe_plan *plan);
+/* The first texel of crystals: z and x of each refractor's axes; then [refractors][sets][count],
+ * with the inverse squares of the outer indices as half their sum and half the difference of x's
+ * and z's, and the sine and cosine of the angle between an optic axis and z, which lies between x
+ * and z (crystals.glsl). */
+size_t abbe_camera_bands_crystals(const abbe_plan *plan);
 
 /* So many wavelengths that bands are joined first, and come back where they differ. */
 bool abbe_camera_bands_refine(const abbe_plan *plan);
@@ -42,8 +47,9 @@ bool abbe_camera_bands_interleave(const abbe_plan *plan);
 
 /* out: [refractors][ABBE_CAMERA_BAND_SETS][abbe_camera_bands_count]; texel, zeroed: as many as
  * abbe_camera_bands_texels says, of [sets][count][ABBE_BAND_COLOUR_TEXELS], then of
- * [refractors][sets][count][ABBE_PART_TEXELS] and of [sets][count][ABBE_PART_LIGHT_TEXELS]. Errors
- * of abbe_spectral_tables_make. */
+ * [refractors][sets][count][ABBE_PART_TEXELS] and of [sets][count][ABBE_PART_LIGHT_TEXELS], and
+ * the parts along x, y and z of a plan with pleochroism, as those before. Errors of
+ * abbe_spectral_tables_make. */
 abbe_result abbe_camera_bands_fill(const abbe_scene *scene, const abbe_plan *plan,
                                    const abbe_spectral_tables *tables, abbe_camera_band *out,
                                    float (*texel)[4], abbe_error *error);

@@ -44,7 +44,9 @@ static void fill_half(const abbe_scene *scene, const abbe_plan *plan, size_t r,
                       const abbe_weights_range *light, double from_nm, double to_nm, float *parts,
                       float *range) {
   const double amount =
-      plan->mirror[r] ? 1 : abbe_usual_path(&scene->object[plan->refractor_object[r]]);
+      plan->mirror[r % plan->refractor_count]
+          ? 1
+          : abbe_usual_path(&scene->object[plan->refractor_object[r % plan->refractor_count]]);
   const double step = (to_nm - from_nm) / HALF_STEPS;
   half h = {.all = 0};
   for (int i = 0; i < HALF_STEPS; i++) {
@@ -58,7 +60,7 @@ static void fill_half(const abbe_scene *scene, const abbe_plan *plan, size_t r,
   *range = fmaxf(*range, (float)range_of(&h));
 }
 
-/* out: [w->count][refractors] attenuation of two parts of the half of the band below the node, and
+/* out: [w->count][surfaces] attenuation of two parts of the half of the band below the node, and
  * of two above it, each of a half's brightness, as they leave their mean of a usual path; then the
  * most by which it differs within a half, and abbe_tint_of(). Of one node both halves are the whole
  * band. */
@@ -68,10 +70,11 @@ static void tint_nodes_fill(const abbe_scene *scene, const abbe_plan *plan,
   abbe_weights_range light;
   abbe_weights_range_make_by(plan->desc.observer, abbe_scene_illuminant(scene), w->edge_nm[0],
                              w->edge_nm[w->count], &light);
-  for (size_t r = 0; r < plan->refractor_count; r++) {
+  const size_t surfaces = abbe_plan_surfaces(plan);
+  for (size_t r = 0; r < surfaces; r++) {
     const int tint = abbe_tint_of(scene, plan, r);
     for (size_t i = 0; i < w->count; i++) {
-      float(*of)[4] = out[i * plan->refractor_count + r];
+      float(*of)[4] = out[i * surfaces + r];
       const double end_nm = one ? w->edge_nm[1] : w->lambda_nm[i];
       const double begin_nm = one ? w->edge_nm[0] : w->lambda_nm[i];
       of[1][0] = 0;
@@ -219,9 +222,9 @@ static abbe_result fill_tints(const abbe_scene *scene, const abbe_plan *plan,
                               abbe_spectral_tables *t, abbe_error *error) {
   if (plan->tints == 0) return ABBE_OK;
   const bool refines = t->coarse.count < t->all.count;
-  const size_t coarse = t->coarse.count * plan->refractor_count;
+  const size_t coarse = t->coarse.count * abbe_plan_surfaces(plan);
   t->tints =
-      calloc(coarse + (refines ? t->all.count * plan->refractor_count : 0), sizeof *t->tints);
+      calloc(coarse + (refines ? t->all.count * abbe_plan_surfaces(plan) : 0), sizeof *t->tints);
   if (t->tints == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for attenuation");
   tint_nodes_fill(scene, plan, &t->coarse, t->tints);
   if (refines) tint_nodes_fill(scene, plan, &t->all, t->tints + coarse);
@@ -380,7 +383,7 @@ size_t abbe_interval_sums_texels(const abbe_plan *plan) {
 }
 
 size_t abbe_interval_sums_size(const abbe_plan *plan, size_t steps, size_t nodes) {
-  const size_t rows = plan->light_view_count * plan->refractor_count * (nodes + 1);
+  const size_t rows = plan->light_view_count * abbe_plan_surfaces(plan) * (nodes + 1);
   return rows * abbe_interval_sums_texels(plan) * (steps + 1);
 }
 
@@ -410,7 +413,8 @@ static void weigh_part(const abbe_interval_sums *of, const abbe_weights_range *r
  * stays, the place along is by wavelength; so it is without a material. */
 static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *w,
                           const abbe_weights_range *range, size_t r, size_t i, float (*out)[4]) {
-  const abbe_material *material = abbe_mirror_nodes_laid_by(of->scene, of->plan, r);
+  const abbe_material *material =
+      abbe_mirror_nodes_laid_by(of->scene, of->plan, r % of->plan->refractor_count);
   const size_t texels = abbe_interval_sums_texels(of->plan);
   double min = w->edge_nm[0], max = w->edge_nm[w->count];
   double a = i > 0 ? w->lambda_nm[i - 1] : w->edge_nm[0];
@@ -462,7 +466,7 @@ float (*abbe_interval_sums_fill(const abbe_interval_sums *of, const abbe_wavelen
     abbe_weights_range range;
     abbe_weights_range_make_by(plan->desc.observer, &of->scene->light[light].illuminant,
                                w->edge_nm[0], w->edge_nm[w->count], &range);
-    for (size_t k = 0; k < plan->refractor_count; k++)
+    for (size_t k = 0; k < abbe_plan_surfaces(plan); k++)
       for (size_t i = 0; i <= w->count; i++, out += an_interval)
         fill_interval(of, w, &range, k, i, out);
   }

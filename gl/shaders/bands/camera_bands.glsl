@@ -29,6 +29,12 @@ Depth parts_at(int texel) {
 
 Depth attenuation_of(int r) { return parts_at(2 * (first_band(r) + band_at)); }
 
+#ifdef PLEOCHROIC
+Depth attenuation_along(int axis, int r) {
+  return parts_at((2 * REFRACTORS + 6) * BAND_SETS * counts.bands + 2 * (first_band(axis * REFRACTORS + r) + band_at));
+}
+#endif
+
 void take_band(int set, int at) {
   band_set = set;
   band_at = at;
@@ -65,6 +71,21 @@ vec2 refractor_spectrum(int r) {
   Band band = bands[first_band(r) + band_at];
   return vec2(band.weight_n.w, band.surface.x);
 }
+
+#ifdef CRYSTALS
+Crystal crystal_of(int r) {
+  int at = counts.crystals + 2 * r;
+  return make_crystal(texelFetch(band_texels, at).xyz, texelFetch(band_texels, at + 1).xyz,
+                      texelFetch(band_texels, counts.crystals + 2 * REFRACTORS + first_band(r) + band_at));
+}
+#endif
+
+#ifdef PLEOCHROIC
+Depth wave_attenuation(Crystal c, int r, int wave, vec3 k) {
+  vec3 shares = axis_shares(c, wave, k);
+  return shares.x * attenuation_along(0, r) + shares.y * attenuation_along(1, r) + shares.z * attenuation_along(2, r);
+}
+#endif
 
 // What a path shows in all, of what it has shown: by the weights of that and of what is left, which shows the same.
 vec3 tail_of(vec3 shown, vec3 left) { return 1.0 + left / max(shown, 1e-30); }

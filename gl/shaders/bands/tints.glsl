@@ -70,7 +70,7 @@ bool has_tint(Tints t, int of) {
   return has;
 }
 
-// Tables of what tints: two texels each at [node][refractor] (spectral_tables.h). Attenuation of
+// Tables of what tints: two texels each at [node][surface] (spectral_tables.h). Attenuation of
 // two parts of a band below its node, and of two above it, each of a half's brightness; then by how
 // much it differs within a half, and whose tint it is.
 uniform samplerBuffer tints;

@@ -110,7 +110,7 @@ static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
   if (result == ABBE_OK)
     result =
         abbe_media_make(&t->geometry, t->sampling.lambda_nm, t->sampling.steps, &t->media, error);
-  if (d->physics.matched) abbe_media_forget_axes(&t->media);
+  if (d->physics.matched) abbe_media_polish(&t->media);
   if (result == ABBE_OK && !d->physics.matched)
     result = abbe_glow_make(&t->geometry, &t->sampling, &t->media, &t->glow, error);
   t->media.haze.once = d->physics.matched || d->physics.once;

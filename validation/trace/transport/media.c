@@ -217,8 +217,7 @@ float abbe_media_attenuation_along(const abbe_media *m, int i, uint32_t k, float
       (double)(a[2] + f * (a[5] - a[2])), abbe_vector_dot(ray, m->axis[i]));
 }
 
-void abbe_media_forget_axes(abbe_media *m) {
+void abbe_media_polish(abbe_media *m) {
   free(m->rough);
   m->rough = NULL;
-  free_crystals(m);
 }

@@ -98,9 +98,8 @@ abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_
                             abbe_media *out, abbe_error *error);
 void abbe_media_free(abbe_media *media);
 
-/* Takes crystals for isotropic with their ordinary index, and all faces for smooth, as the renderer
- * does. */
-void abbe_media_forget_axes(abbe_media *media);
+/* Takes all faces for smooth, as the renderer does. */
+void abbe_media_polish(abbe_media *media);
 
 /* Whether the medium (-1: air) has two indices. */
 static inline bool abbe_media_is_crystal(const abbe_media *m, int i) {

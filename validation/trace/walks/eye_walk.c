@@ -168,7 +168,7 @@ static bool scatter(const abbe_eye_context *c, branches *b, abbe_eye_path *p, co
 }
 
 /* All ways on from a crystal's face, as scatter. Those of which little is left share one number, so
- * that about as many go on as there is light for. Matched physics knows no crystals. */
+ * that about as many go on as there is light for. Matched physics follows all of them. */
 static bool scatter_waves(const abbe_eye_context *c, branches *b, abbe_eye_path *p,
                           const abbe_hit *hit, const crossing *x, const float random[4]) {
   const abbe_eye_path first = *p;

@@ -68,20 +68,24 @@ TEST(all_that_is_to_say_is_noted) {
   for (int i = 0; i < 30; i++) assert_true(is_noted(&plan, printed("b%d: film: R at", i)));
 }
 
-/* A crystal has one index here, and the plan says what is left out, once a material. */
+/* The plan says how a crystal is drawn, once a material. */
 TEST(double_refraction_is_noted) {
   const char *head = "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR;
   FILLED(abbe_plan, plan,
          plan_text(printed("%s%s%s", head, BALL("calcite"), BRICK("calcite")), NULL, &plan));
-  assert_true(is_noted(&plan, "calcite: double refraction is left out; it has its ordinary index "
-                              "alone, and the extraordinary one is 0.1726 lower at 580 nm"));
+  assert_true(plan.crystals && !plan.pleochroic);
+  assert_true(
+      is_noted(&plan, "calcite: double refraction by 0.1726 at 580 nm: both waves are drawn"));
   size_t count = 0;
   for (size_t i = 0; i < plan.note_count; i++)
     count += strstr(plan.note[i], "double refraction") != NULL ? 1 : 0;
   assert_int_equal(count, 1);
   abbe_plan_free(&plan);
   plan_text(printed("%s%s", head, BALL("diamond")), NULL, &plan);
-  assert_false(is_noted(&plan, "double refraction"));
+  assert_false(is_noted(&plan, "double refraction") || plan.crystals);
+  abbe_plan_free(&plan);
+  plan_text(printed("%s%s", head, BALL("tanzanite")), NULL, &plan);
+  assert_true(plan.crystals && plan.pleochroic && plan.tints == 3);
 }
 
 /* Known answers of panes of index 1.5 and of diamond; and polarisers. */

@@ -49,9 +49,11 @@ static void done(fixture *f) {
   abbe_scene_free(&f->scene);
 }
 
-/* What is passed: metres inside each surface, or times that it reflects. */
+/* What is passed: metres inside each surface, or times that it reflects; of a pleochroic stone by a
+ * field along the axis. */
 typedef struct passage {
   double by[2];
+  int axis;
 } passage;
 
 /* As the shaders sum it (camera_bands.glsl): band i of a set, X, Y and Z of a white of 1 each. */
@@ -64,7 +66,10 @@ static void add_band(const fixture *f, size_t set, size_t i, const passage *p, d
     double left = 1;
     for (size_t r = 0; r < f->surfaces; r++) {
       const abbe_camera_band *band = &f->band[r * apart + at];
-      const double by = (double)parts[ABBE_PART_TEXELS * (r * apart + at) + part / 4][part % 4];
+      const size_t along = f->plan.pleochroic ? f->surfaces * (size_t)(p->axis + 1) : 0;
+      const size_t after = along > 0 ? ABBE_PART_LIGHT_TEXELS * apart : 0;
+      const double by =
+          (double)parts[after + ABBE_PART_TEXELS * ((r + along) * apart + at) + part / 4][part % 4];
       const double metal = !f->plan.mirror[r] || band->surface[3] < 0
                                ? 0
                                : abbe_optics_fresnel_conductor(1, (double)band->surface[2],
@@ -81,7 +86,10 @@ static double left_at(const fixture *f, const passage *p, double lambda_nm) {
     const abbe_object *o = &f->scene.object[f->plan.refractor_object[r]];
     double n, k;
     if (!f->plan.mirror[r]) {
-      left *= exp(-p->by[r] * abbe_material_attenuation(o->material, lambda_nm));
+      left *=
+          exp(-p->by[r] * (f->plan.pleochroic
+                               ? abbe_material_attenuation_along(o->material, p->axis, lambda_nm)
+                               : abbe_material_attenuation(o->material, lambda_nm)));
     } else {
       OK(abbe_material_nk(o->conductor, lambda_nm, &n, &k, &error));
       left *= pow(abbe_optics_fresnel_conductor(1, n, k), p->by[r]);
@@ -103,9 +111,9 @@ static void integrate(const fixture *f, const passage *p, double xyz[3]) {
 
 /* Every level of every set, in CIEDE2000 against the integral, under the light's white; and
  * dominant wavelengths, where there is one. Fewer than seven bands of a sample have too few parts
- * for two materials. */
+ * for two materials, or for the colours of several axes. */
 static void hold(const fixture *f, const passage *p, const char *what, double *worst) {
-  const bool two = p->by[0] > 0 && p->by[1] > 0;
+  const bool two = (p->by[0] > 0 && p->by[1] > 0) || f->plan.pleochroic;
   const double *white = f->tables.camera.sum;
   double xyz[3] = {0}, lab[3], xy[2], white_xy[2];
   abbe_dominant wanted, got;
@@ -149,7 +157,8 @@ TEST(stones_have_their_colour_at_any_length) {
                stone[s]),
            wavelengths[k], &f);
       for (size_t i = 0; i < sizeof length_m / sizeof *length_m; i++)
-        hold(&f, &(passage){{length_m[i], 0}}, stone[s], &worst);
+        for (int axis = 0; axis < 3; axis++)
+          hold(&f, &(passage){{length_m[i], 0}, axis}, stone[s], &worst);
       done(&f);
     }
   print_message("stones alone are at most %.3f CIEDE2000 off\n", worst);
@@ -162,8 +171,8 @@ TEST(paths_through_two_stones_have_their_colour) {
     make("- {name: a, shape: sphere, radius: 0.003, centre: [0, 0, 0.2], material: ruby}\n"
          "- {name: b, shape: sphere, radius: 0.003, centre: [0.1, 0, 0.2], material: emerald}\n",
          wavelengths[k], &f);
-    hold(&f, &(passage){{0.002, 0.009}}, "ruby, then emerald", &worst);
-    hold(&f, &(passage){{0.006, 0.001}}, "ruby, then emerald", &worst);
+    hold(&f, &(passage){{0.002, 0.009}, 0}, "ruby, then emerald", &worst);
+    hold(&f, &(passage){{0.006, 0.001}, 2}, "ruby, then emerald", &worst);
     done(&f);
   }
   print_message("through two stones, %.3f\n", worst);
@@ -176,9 +185,9 @@ TEST(metals_have_their_colour_however_often_they_reflect) {
     make("- {name: a, shape: sphere, radius: 0.003, centre: [0, 0, 0.2], mirror: gold}\n"
          "- {name: b, shape: sphere, radius: 0.003, centre: [0.1, 0, 0.2], material: ruby}\n",
          wavelengths[k], &f);
-    hold(&f, &(passage){{1, 0}}, "gold", &worst);
-    hold(&f, &(passage){{3, 0}}, "gold, thrice", &worst);
-    hold(&f, &(passage){{1, 0.004}}, "ruby in gold", &worst);
+    hold(&f, &(passage){{1, 0}, 0}, "gold", &worst);
+    hold(&f, &(passage){{3, 0}, 0}, "gold, thrice", &worst);
+    hold(&f, &(passage){{1, 0.004}, 0}, "ruby in gold", &worst);
     done(&f);
   }
   print_message("off gold, %.3f\n", worst);

@@ -122,10 +122,6 @@ TEST(media_know_their_axes) {
   assert_true(abbe_media_same(&m, 0, 1)); /* the two ends of an axis are alike */
   assert_false(abbe_media_same(&m, 0, 2));
   assert_true(abbe_media_is_crystal(&m, 2) && !abbe_media_is_crystal(&m, -1));
-  abbe_media_forget_axes(&m);
-  assert_false(abbe_media_is_crystal(&m, 2));
-  abbe_media_crystal(&m, 0, 0, 0, &u);
-  assert_true(u.n_e == u.n_o);
 }
 
 /* ---- polarised light ---- */

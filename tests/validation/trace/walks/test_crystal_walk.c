@@ -182,18 +182,6 @@ TEST(splitting_biases_nothing) {
   assert_near(landed[1], landed[0], 5e-3);
 }
 
-/* Matched physics is the renderer's, which has the ordinary index alone. */
-TEST(matched_physics_knows_one_index) {
-  FREED fixture *f = malloc(sizeof *f);
-  const abbe_physics matched = {.matched = true, .orders = 1000, .energy_share = 0};
-  make_crystal(CALCITE("[1, 0, 1]"), &matched, f);
-  abbe_media_forget_axes(&f->media);
-  const double from[3] = {0.02, 0.01, 0.5}, down[3] = {0, 0, -1};
-  const double r = pow((n_o - 1) / (n_o + 1), 2);
-  check_share((double)shoot(f, from, down, 32), 32.0 * BATCH, (1 - r) / (1 + r));
-  fixture_free(f);
-}
-
 /* ---- the eye ---- */
 
 /* A bright floor under a slab of the table, seen from straight above through a narrow angle. */
