@@ -4,11 +4,13 @@
 #include "gl/plan/examine/inner_light.h"
 #include "gl/plan/examine/light_views.h"
 #include "gl/plan/examine/models.h"
+#include "gl/plan/examine/reach.h"
 #include "gl/plan/examine/spectral_needs.h"
 #include "gl/plan/support.h"
 #include "scenes/lights/environment_lights.h"
 #include "scenes/mesh/mesh.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -335,15 +337,46 @@ static void combine(abbe_plan *plan) {
   plan->band_parts = (plan->tinting || plan->colouring || plan->pleochroic) && !published;
 }
 
+/* Whether it is alike all around, to a rounding: clear objects change nothing then. */
+static bool is_even(const abbe_radiance_map *map) {
+  for (size_t i = 3; i < 3 * map->width * map->height; i++)
+    if (fabsf(map->rgb[i] - map->rgb[i % 3]) > 1e-3f * map->rgb[i % 3]) return false;
+  return true;
+}
+
+/* Whether soft light, without shadows, would show: near receivers a single exact solid hides some.
+ */
+static bool shades_softly(const abbe_scene *scene, const abbe_plan *plan) {
+  enum { MOST_PARALLELOGRAMS = 64 };
+  const double least = 0.01; /* of an environment's light */
+  double soft = plan->surrounded ? scene->environment->luminance : 0;
+  for (size_t i = 0; i < scene->environment_lights; i++)
+    soft -= scene->light[scene->light_count - 1 - i].power;
+  if (!plan->surrounded || soft < least * scene->environment->luminance ||
+      plan->refractor_count != 1 || plan->multi_refractor_paths || plan->layers ||
+      plan->receivers != ABBE_RECEIVER_EXACT || plan->parallelogram_count > MOST_PARALLELOGRAMS ||
+      abbe_scene_is_hazy(scene) || (!plan->absorbing && is_even(&scene->environment->map)))
+    return false;
+  for (size_t i = 0; i < plan->receiver_count; i++)
+    if (abbe_reach_is_near(&scene->object[plan->receiver_object[i]],
+                           &scene->object[plan->refractor_object[0]]))
+      return true;
+  return false;
+}
+
+/* Whether the plan chooses the transport, and photons alone are what it would choose. */
+static bool is_open(const abbe_render_desc *asked, const abbe_plan *plan) {
+  return (asked == NULL || asked->transport == ABBE_TRANSPORT_AUTO) &&
+         plan->desc.transport == ABBE_TRANSPORT_PHOTONS &&
+         !abbe_method_of(plan->desc.profile)->own_passes;
+}
+
 /* Light goes on from rough mirrors through samples of them alone. */
-static void choose_transport(const abbe_scene *scene, const abbe_render_desc *desc,
+static void choose_transport(const abbe_scene *scene, const abbe_render_desc *asked,
                              abbe_plan *plan) {
   for (size_t i = 0; i < scene->object_count; i++)
     plan->rough = plan->rough || abbe_brushing_is_rough(&scene->object[i].brushing);
-  const bool open = desc == NULL || desc->transport == ABBE_TRANSPORT_AUTO;
-  if (plan->rough && open && plan->desc.transport == ABBE_TRANSPORT_PHOTONS &&
-      !abbe_method_of(plan->desc.profile)->own_passes)
-    abbe_render_desc_take_pinholes(&plan->desc);
+  if (plan->rough && is_open(asked, plan)) abbe_render_desc_take_pinholes(&plan->desc);
 }
 
 /* Views of fewer triangles, where they are asked for and some mesh has many. */
@@ -368,6 +401,8 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   if (result == ABBE_OK) result = abbe_refractor_model_choose(scene, out, error);
   if (result == ABBE_OK) result = abbe_watch_check(error);
   if (result == ABBE_OK) abbe_receiver_model_choose(scene, out);
+  if (result == ABBE_OK && is_open(desc, out) && shades_softly(scene, out))
+    abbe_render_desc_take_pinholes(&out->desc);
   if (result == ABBE_OK) result = abbe_support_haze(scene, out, error);
   if (result == ABBE_OK) result = abbe_support_published(scene, out, error);
   if (result == ABBE_OK) result = abbe_support_pinholes(scene, out, error);

@@ -35,7 +35,8 @@ abbe_result abbe_support_pinholes(const abbe_scene *scene, const abbe_plan *plan
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the transport 'pinhole' carries an environment's light; this scene has "
                           "none: take the transport 'photons'");
-  if (plan->refractor_count == 0 || !plan->multi_refractor_paths)
+  if (plan->refractor_count == 0 || plan->layers ||
+      (plan->refractor_count > 1 && !plan->multi_refractor_paths))
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the transport 'pinhole' follows light through at least one mirror or "
                           "refractor and at most 32, and not through the model 'layers'");

@@ -76,7 +76,7 @@ enum {
 /* How caustics come to receivers: by photons; looked up in a volume that was computed beforehand
  * (scenes/volume/caustic_volume.h); or those of what stands out of surroundings by photons, and
  * those of the rest through samples of mirrors and refractors as pinholes. AUTO: in a volume where
- * one is given, by pinholes in wand2003. */
+ * one is given, by pinholes in wand2003 and where the plan finds soft light to shade. */
 #define ABBE_TRANSPORTS(X)                                                                         \
   X(AUTO, "auto") X(PHOTONS, "photons") X(VOLUME, "volume") X(PINHOLE, "pinhole")
 typedef enum abbe_transport {

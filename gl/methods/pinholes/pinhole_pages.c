@@ -220,7 +220,8 @@ enum {
   UNIT = 5,
   PLACES_UNIT = 2,
   LEAST_SIDE = 16,
-  MAP_TEXELS = 4,        /* texels of the spectral map, a side, for one of a tile */
+  MAP_TEXELS = 4,        /* texels of the spectral map, a side, for one of a tile; */
+  SOFT_TEXELS = 16,      /* where refractors alone blur what they show */
   MOST_TEXELS = 1 << 22, /* texels of all tiles: many have fewer each */
   MOST_PAGES = 2048,     /* layers of an array, as OpenGL promises them */
   LEAST_CUBE = 16,
@@ -250,8 +251,8 @@ static abbe_result make_sky(const abbe_gpu_scene *scene, abbe_pinhole_sky *out, 
 }
 
 /* Texels a side; of many tiles as many as memory allows. */
-static size_t side_of(const abbe_render_desc *d, size_t pages) {
-  size_t side = d->map_size / MAP_TEXELS;
+static size_t side_of(const abbe_plan *plan, size_t pages) {
+  size_t side = plan->desc.map_size / (plan->mirror_count > 0 ? MAP_TEXELS : SOFT_TEXELS);
   while (side > LEAST_SIDE && side * side * pages > MOST_TEXELS) side /= 2;
   return side > LEAST_SIDE ? side : LEAST_SIDE;
 }
@@ -270,6 +271,7 @@ static abbe_result make_programs(abbe_pinhole_pages *pages, const abbe_shader_va
   const abbe_plan *plan = pages->scene->plan;
   abbe_shader_variant follows = *variant;
   follows.exits = plan->eye_exits;
+  follows.walk = true; /* also where the camera's rays need no such loop */
   char places[64] = "";
   if (plan->page_charts)
     snprintf(places, sizeof places, "#define PINHOLE_CHARTS\n#define RECEIVERS %zu\n",
@@ -289,7 +291,7 @@ abbe_result abbe_pinhole_pages_make(const abbe_gpu_scene *scene, const abbe_shad
   out->scene = scene;
   out->count =
       2 * (scene->plan->page_charts ? scene->charts.count : scene->plan->parallelogram_count);
-  out->side = side_of(d, out->count);
+  out->side = side_of(scene->plan, out->count);
   abbe_result result = check_count(scene, out->count, error);
   if (result == ABBE_OK) result = abbe_pinhole_samples_make(scene, false, &out->samples, error);
   if (result == ABBE_OK && scene->plan->page_charts)

@@ -106,6 +106,16 @@ static bool boxes_meet(const double a_min[3], const double a_max[3], const doubl
   return true;
 }
 
+bool abbe_reach_is_near(const abbe_object *receiver, const abbe_object *refractor) {
+  double min[3], max[3], middle[3];
+  const double far = 2 * ball_around(refractor, middle);
+  for (int k = 0; k < 3; k++) {
+    min[k] = refractor->min[k] - far;
+    max[k] = refractor->max[k] + far;
+  }
+  return boxes_meet(receiver->min, receiver->max, min, max);
+}
+
 bool abbe_reach_overlap(const abbe_object *a, const abbe_object *b) {
   if (!boxes_meet(a->min, a->max, b->min, b->max)) return false;
   if (a->exact.kind != ABBE_EXACT_SPHERE || b->exact.kind != ABBE_EXACT_SPHERE) return true;

@@ -33,6 +33,9 @@ bool abbe_reach_overlap(const abbe_object *a, const abbe_object *b);
 bool abbe_reach_into(const abbe_object *receiver, const abbe_object *refractor);
 bool abbe_reach_is_entered(const abbe_scene *scene, const abbe_object *refractor);
 
+/* Whether their bounds are nearer to one another than the refractor's are long. */
+bool abbe_reach_is_near(const abbe_object *receiver, const abbe_object *refractor);
+
 /* Signed distance of a point from the plane of a parallelogram (corner, edges u and v), m. */
 double abbe_reach_side(const double parallelogram[9], const double at[3]);
 

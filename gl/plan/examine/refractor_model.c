@@ -94,15 +94,14 @@ static const char *why_in_turn(const abbe_scene *scene, abbe_plan *plan) {
   if (refractors == 0) return NULL;
   if (plan->desc.model == ABBE_MODEL_LAYERS || refractors > MAX_FOLLOWED) return NULL;
   if (plan->desc.model == ABBE_MODEL_BVH) return "as asked";
-  if (plan->desc.transport == ABBE_TRANSPORT_PINHOLE)
-    return "light of all around is followed from every receiver";
   if (refractors - clouds > 1) return "there is more than one refractor";
   if (clouds > 0) return "clouds in the refractor scatter otherwise than it does";
   if (scene->camera.inside && plan->around_eye != NULL) return "the eye is inside a refractor";
   if (abbe_refractor_films_by_face(only)) return "films are on some of the refractor's faces";
-  if (only->exact.kind != ABBE_EXACT_SPHERE && only->exact.kind != ABBE_EXACT_CONVEX &&
-      !is_convex(&only->mesh, &plan->shape))
-    return "the refractor is not convex";
+  const bool exact = only->exact.kind == ABBE_EXACT_SPHERE || only->exact.kind == ABBE_EXACT_CONVEX;
+  if (!exact && plan->desc.transport == ABBE_TRANSPORT_PINHOLE)
+    return "light of all around is followed from every receiver through a mesh";
+  if (!exact && !is_convex(&only->mesh, &plan->shape)) return "the refractor is not convex";
   if (abbe_reach_is_entered(scene, only)) return "a receiver may reach into the refractor";
   if (only->medium != NULL) return "what is in the refractor scatters light";
   return NULL;

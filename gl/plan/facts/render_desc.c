@@ -354,7 +354,7 @@ const abbe_render_setting abbe_render_settings[] = {
     {CHOICE(model, ABBE_MODELS, NAME_OF_2), .option = "model", .aside = true,
      .default_ = "auto: by the scene", .help = "how light goes through refractors: "},
     {CHOICE(transport, ABBE_TRANSPORTS, NAME_OF_2), .option = "transport",
-     .default_ = "photons; of wand2003 pinhole",
+     .default_ = "by the scene; of wand2003 pinhole",
      .help = "of caustics: photons; volume, looked up in what abbe volume has made; or pinhole, "
              "photons of what stands out of surroundings and samples of mirrors and refractors for "
              "the rest"},
