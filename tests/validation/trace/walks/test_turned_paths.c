@@ -1,5 +1,8 @@
-/* Rough faces and haze in refractors: every watt is in the ledger. */
+/* Rough faces, haze, films, crystals and glow in refractors: every watt is in the ledger, and in
+ * even surroundings what is clear cannot be seen. */
 #include "tests/validation/trace/walks/light_walks.h"
+
+#include "validation/trace/tracer/tracer.h"
 
 #define SCENE "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR
 
@@ -41,4 +44,124 @@ TEST(every_watt_is_in_the_ledger) {
     assert_true(l->turned <= l->reached && l->frosted <= l->reached);
     fixture_free(f);
   }
+}
+
+/* ---- stones of every kind at random ---- */
+
+static const char *const stones[][2] = {{"n-bk7", ""},
+                                        {"diamond", ""},
+                                        {"cubic-zirconia", ""},
+                                        {"quartz", "axis"},
+                                        {"calcite", "axis"},
+                                        {"zircon", "axis"},
+                                        {"ruby", "axis"},
+                                        {"alexandrite", "axes"},
+                                        {"sphene", "axes"},
+                                        {"topaz", "axes"},
+                                        {"tanzanite", "axes"},
+                                        {"ruby-fluorescent", "axis"},
+                                        {"diamond-fluorescent", ""}};
+enum { STONES = sizeof stones / sizeof *stones };
+
+static bool by_chance(uint64_t *random, double share) {
+  return random_between(random, 0, 1) < share;
+}
+
+static void describe(uint64_t *random, char *out, size_t size) {
+  const char *const *stone = stones[random_bits(random) % STONES];
+  const char *const shapes[] = {
+      "shape: sphere, radius: 0.08, levels: 4", "shape: box, size: [0.12, 0.1, 0.07]",
+      "shape: gem, sides: 7, girdle: 0.08, table: 0.045, crown: 0.026, pavilion: 0.06"};
+  const bool box = by_chance(random, 0.5);
+  double x[3], z[3];
+  random_unit(random, x);
+  random_unit(random, z);
+  size_t at = (size_t)snprintf(out, size, "%s, material: %s",
+                               shapes[box ? 1 : random_bits(random) % 3], stone[0]);
+#define MORE(...) at += (size_t)snprintf(out + at, size - at, __VA_ARGS__)
+  if (strcmp(stone[1], "axis") == 0) MORE(", axis: [%g, %g, %g]", z[0], z[1], z[2]);
+  if (strcmp(stone[1], "axes") == 0)
+    MORE(", axes: {x: [%g, %g, %g], z: [%g, %g, %g]}", x[0], x[1], x[2], z[0], z[1], z[2]);
+  if (by_chance(random, 0.4)) MORE(", roughness: %g", random_between(random, 0.01, 1));
+  if (by_chance(random, 0.4))
+    MORE(", coating: {layers: [[%g, %g], [%g, %g]]}", random_between(random, 1.3, 2.6),
+         random_between(random, 10, 400), random_between(random, 1.3, 2.6),
+         random_between(random, 10, 400));
+  if (by_chance(random, 0.4))
+    MORE(", medium: {scattering: %g, g: %g}", random_between(random, 1, 40),
+         random_between(random, -0.8, 0.8));
+  if (by_chance(random, 0.3))
+    MORE(", clouds: [{radius: 0.02, medium: {scattering: %g, g: %g}}]",
+         random_between(random, 1, 200), random_between(random, -0.8, 0.8));
+#undef MORE
+}
+
+/* Mean radiance of passes of the picture, and its standard error. */
+static void watch(abbe_tracer *t, double *mean, double *standard_error) {
+  enum { PASSES = 12 };
+  double before = 0, square = 0;
+  *mean = 0;
+  for (int p = 1; p <= PASSES; p++) {
+    OK(abbe_tracer_pass(t, NULL, &error));
+    OWNED(abbe_image, picture) = {0};
+    OK(abbe_tracer_picture(t, &picture, &error));
+    const size_t y = abbe_image_find_channel(&picture, "Y"), all = picture.width * picture.height;
+    double sum = 0;
+    for (size_t i = 0; i < all; i++) sum += (double)picture.data[i * picture.channels + y] / all;
+    const double pass = p * sum - (p - 1) * before, off = pass - *mean;
+    before = sum;
+    *mean += off / p;
+    square += off * (pass - *mean);
+  }
+  *standard_error = sqrt(square / (PASSES - 1) / PASSES);
+}
+
+/* By the light of the surroundings photons are followed, where something far off may show them. */
+TEST(random_stones_close_their_ledger) {
+  const int count = all_cases() ? 1000 : SANITIZED ? 2 : 8;
+  uint64_t random = 46;
+  double off = 0, weight = 0;
+  for (int i = 0; i < count; i++) {
+    char stone[1024];
+    describe(&random, stone, sizeof stone);
+    OWNED(abbe_scene, scene) = scene_of(printed(
+        "camera: {eye: [0, -0.4, 0.15], target: [0, 0, 0], fov: 14}\n"
+        "environment: {uniform: 1, illuminant: E, size: 64}\nobjects:\n- {name: stone, %s}\n"
+        "- {name: far off, shape: rectangle, width: 0.1, height: 0.1, reflectance: 1.0e-9,\n"
+        "   transform: [{translate: [0, 0, -5]}]}\n",
+        stone));
+    abbe_trace_desc desc = {.width = 6,
+                            .height = 6,
+                            .photons = 4096,
+                            .no_map = true,
+                            .threads = 1,
+                            .seed = (uint32_t)i,
+                            .space = ABBE_RGB_SPACE_XYZ};
+    if (by_chance(&random, 0.3)) desc.polarisation = ABBE_TRACE_POLARISATION_ON;
+    abbe_tracer *t = NULL;
+    OK(abbe_tracer_make(&scene, &desc, &t, &error));
+    double mean, standard_error;
+    watch(t, &mean, &standard_error);
+    abbe_trace_statistics statistics;
+    abbe_tracer_statistics(t, &statistics);
+    const abbe_light_ledger *l = &statistics.ledger;
+    const double in = l->reached + l->glowing;
+    const double out = l->deposited + l->absorbed + l->missed + l->lost + l->excited;
+    const abbe_material *m = scene.object[0].material;
+    const bool clear = m->attenuation == NULL && !abbe_material_is_fluorescent(m);
+    /* a smooth ball keeps for ever what glows near its surface */
+    const bool bounded = !abbe_material_is_fluorescent(m);
+    const bool right = fabs(out - in) <= 1e-6 * in && (!bounded || l->lost <= 1e-4 * in) &&
+                       (!clear || fabs(mean - 1) <= 12 * standard_error + 1e-3);
+    if (!right)
+      print_message("stone %d: %s: ledger %.9f, lost %.2g, radiance %.5f +- %.5f%s\n", i, stone,
+                    out / in, l->lost / in, mean, standard_error,
+                    desc.polarisation ? ", polarised" : "");
+    assert_true(right);
+    const double trust = 1 / (standard_error * standard_error + 1e-7);
+    off += clear ? trust * (mean - 1) : 0;
+    weight += clear ? trust : 0;
+    abbe_tracer_free(t);
+  }
+  assert_near(off / weight, 0, 5 / sqrt(weight) + 2e-4);
 }
