@@ -18,10 +18,12 @@ static abbe_result make_views(abbe_renderer *r, abbe_error *error) {
 
 /* The map alone where no photons are followed: shaders read it. */
 static abbe_result make_caustics(abbe_renderer *r, abbe_error *error) {
-  return r->plan.caustics
-             ? abbe_caustics_make(&r->views, &r->layers, &r->atlas, &r->map, &r->variant,
-                                  &r->caustics, error)
-             : abbe_spectral_map_make(&r->views, &r->atlas, &r->variant, &r->map, error);
+  if (r->plan.caustics && !r->plan.desc.camera_alone)
+    return abbe_caustics_make(&r->views, &r->layers, &r->atlas, &r->map, &r->variant, &r->caustics,
+                              error);
+  if (r->plan.desc.camera_tiles)
+    ABBE_TRY(abbe_receiver_atlas_make(&r->views, &r->variant, &r->atlas, error));
+  return abbe_spectral_map_make(&r->views, &r->atlas, &r->variant, &r->map, error);
 }
 
 static abbe_result draw_caustics(abbe_renderer *r, abbe_error *error) {
@@ -143,11 +145,14 @@ static abbe_result run_passes(abbe_renderer *r, abbe_error *error) {
     if (!r->seen) result = abbe_method_run(r->method, r->lit, error);
     r->lit = result == ABBE_OK;
   } else {
-    if (!r->lit) result = run_stage(r, ABBE_STAGE_LIGHT, error);
+    if (!r->lit && !r->plan.desc.camera_alone) result = run_stage(r, ABBE_STAGE_LIGHT, error);
+    abbe_renderer_await_ahead(r);
     r->lit = r->lit || (result == ABBE_OK && !r->gpu.stopped &&
                         (r->plan.desc.history_of_changes || abbe_map_history_settled(&r->history)));
-    if (result == ABBE_OK && !r->seen && !r->gpu.stopped)
+    if (result == ABBE_OK && !r->seen && !r->gpu.stopped) {
+      abbe_gpu_forget_samplers(&r->gpu);
       result = run_stage(r, ABBE_STAGE_EYE, error);
+    }
   }
   return result != ABBE_OK ? result : abbe_gl_check(r->gpu.gl, "the frame's passes", error);
 }
@@ -203,7 +208,8 @@ static abbe_result draw(abbe_renderer *r, abbe_render_progress progress, void *u
 abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress, void *user,
                                 abbe_statistics *statistics, abbe_error *error) {
   abbe_error lost = {0};
-  abbe_renderer_watched w = {r->context, progress, user, ABBE_OK, &lost, NULL};
+  abbe_renderer_watched w = {
+      .context = r->context, .progress = progress, .user = user, .error = &lost};
   ABBE_TRY(abbe_renderer_enter(r->context, error));
   abbe_result result =
       draw(r, progress != NULL ? abbe_renderer_watch : NULL, &w, statistics, error);

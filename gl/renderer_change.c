@@ -95,8 +95,25 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   return abbe_renderer_make_stage(r, ABBE_STAGE_EYE, &variant, error);
 }
 
-static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, unsigned parts,
-                              abbe_error *error) {
+/* Whatever fails here, the first renderer compiles itself. */
+static void draw_ahead(const abbe_scene *scene, const abbe_render_desc *desc) {
+  abbe_context *context = NULL;
+  abbe_renderer *small = NULL;
+  abbe_result result = abbe_context_make(ABBE_CONTEXT_CPU, &context, NULL);
+  if (result == ABBE_OK) result = abbe_renderer_make(context, scene, desc, &small, NULL);
+  if (result == ABBE_OK)
+    abbe_renderer_frame(small, desc->progress, desc->progress_user, NULL, NULL);
+  abbe_renderer_free(small);
+  abbe_context_free(context);
+}
+
+void abbe_renderer_begin_ahead(abbe_renderer *r, const abbe_scene *scene) {
+  abbe_renderer_thread_ahead(r, scene, draw_ahead);
+}
+
+/* asked: the scene as it came, without lights for its environment. */
+static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, const abbe_scene *asked,
+                              unsigned parts, abbe_error *error) {
   ABBE_TRY(make_local_scene(r, scene, error));
   const size_t frames = r->plan.caustics && !abbe_renderer_has_method(r) ? r->plan.desc.history : 0;
   if ((parts & LIGHT) != 0) abbe_map_history_change(&r->history, frames, r->local.origin);
@@ -108,6 +125,8 @@ static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, unsigne
     abbe_method_look(r->method);
   if (result != ABBE_OK || abbe_renderer_has_method(r)) return result;
   if ((parts & (LIGHT | POWERS)) == POWERS) abbe_photon_lights_upload(&r->views);
+  if (r->plan.desc.compiles_beside && r->gpu.compiling == NULL) /* it has been told */
+    abbe_renderer_begin_ahead(r, asked);
   return (parts & EYE) != 0 ? make_eye(r, error) : ABBE_OK;
 }
 
@@ -140,6 +159,7 @@ static abbe_result change(abbe_renderer *r, const abbe_scene *scene, const abbe_
   ABBE_TRY(plan_scene(r, scene, desc, &surrounded, &plan, error));
   abbe_environment_lights_drop(&r->surrounded);
   r->surrounded = surrounded;
+  const abbe_scene *asked = scene;
   if (r->surrounded.light != NULL) scene = &r->surrounded;
   abbe_renderer_inputs_of(scene, &plan, &inputs);
   unsigned parts = r->lacking;
@@ -161,7 +181,7 @@ static abbe_result change(abbe_renderer *r, const abbe_scene *scene, const abbe_
   if (parts != 0) r->seen = false; /* all parts show, those of which nothing is made too */
   abbe_gpu_watch(&r->gpu, plan.desc.progress, plan.desc.progress_user);
   r->gpu.compiling = plan.desc.compiling;
-  abbe_result result = abbe_renderer_end_watch(r, make_parts(r, scene, parts, error), error);
+  abbe_result result = abbe_renderer_end_watch(r, make_parts(r, scene, asked, parts, error), error);
   r->lacking = result == ABBE_OK ? 0 : parts; /* the others are as they were */
   if (r->lacking == 0) abbe_method_follow(r->method, &frames);
   abbe_gpu_drop_textures(&r->gpu, ABBE_METHOD_KEPT, frames.sums);
@@ -172,6 +192,7 @@ static abbe_result change(abbe_renderer *r, const abbe_scene *scene, const abbe_
 }
 
 static void free_renderer(abbe_renderer *r) {
+  abbe_renderer_end_ahead(r);
   free_parts(r, ALL);
   abbe_map_history_free(&r->history);
   abbe_gpu_free(&r->gpu);
@@ -183,7 +204,7 @@ static void free_renderer(abbe_renderer *r) {
 
 static void tell_compiling(void *user) {
   const abbe_renderer_watched *w = user;
-  w->compiling(w->user);
+  if (w->compiling != NULL) w->compiling(w->user);
 }
 
 /* The scene and the request taken over, with whoever watches that. */
@@ -191,14 +212,19 @@ static abbe_result change_watched(abbe_renderer *r, const abbe_scene *scene,
                                   const abbe_render_desc *desc, abbe_error *error) {
   abbe_error lost = {0};
   abbe_render_desc request = desc != NULL ? *desc : (abbe_render_desc){0};
-  abbe_renderer_watched w = {r->context, request.progress, request.progress_user, ABBE_OK,
-                             &lost,      request.compiling};
+  abbe_renderer_watched w = {.context = r->context,
+                             .progress = request.progress,
+                             .user = request.progress_user,
+                             .error = &lost,
+                             .compiling = request.compiling};
   if (request.progress != NULL) request.progress = abbe_renderer_watch;
-  if (request.compiling != NULL) request.compiling = tell_compiling;
+  if (request.compiling != NULL || request.compiles_beside) request.compiling = tell_compiling;
+  abbe_renderer_end_ahead(r); /* of the scene before */
   request.progress_user = &w;
   const abbe_result result = change(r, scene, &request, error);
   r->plan.desc.progress = NULL;
   r->plan.desc.compiling = NULL;
+  r->plan.desc.compiles_beside = false;
   return w.result == ABBE_OK ? result : abbe_error_set(error, w.result, "%s", lost.text);
 }
 

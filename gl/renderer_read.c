@@ -183,7 +183,8 @@ abbe_result abbe_renderer_read_hits(abbe_renderer *r, size_t light, size_t first
                                     abbe_renderer_hits *out, abbe_error *error) {
   *out = (abbe_renderer_hits){0};
   abbe_error lost = {0};
-  abbe_renderer_watched w = {r->context, progress, user, ABBE_OK, &lost, NULL};
+  abbe_renderer_watched w = {
+      .context = r->context, .progress = progress, .user = user, .error = &lost};
   ABBE_TRY(abbe_renderer_enter(r->context, error));
   abbe_gpu_watch(&r->gpu, progress != NULL ? abbe_renderer_watch : NULL, &w);
   abbe_result result = read_hits(r, light, first, out, error);

@@ -15,6 +15,9 @@
 #include "gl/scene/local_scene.h"
 #include "gl/scene/seen/seen_meshes.h"
 
+/* Compiles beside the renderer (renderer_ahead.c). */
+typedef struct abbe_renderer_ahead abbe_renderer_ahead;
+
 struct abbe_renderer {
   abbe_context *context;
   abbe_gpu gpu;
@@ -53,6 +56,8 @@ struct abbe_renderer {
   abbe_shaft_grid shafts;
   bool seen; /* the picture is drawn */
 
+  abbe_renderer_ahead *ahead; /* NULL: nothing compiles beside */
+
   GLuint baseline;   /* what abbe_renderer_baseline draws into; 0 before */
   double untimed_ms; /* time of this frame, spent on its ledger */
 };
@@ -79,6 +84,18 @@ abbe_result abbe_renderer_end_watch(abbe_renderer *renderer, abbe_result result,
 bool abbe_renderer_has_method(const abbe_renderer *renderer);
 /* ABBE_INVALID_ARGUMENT where its last change or frame failed. */
 abbe_result abbe_renderer_check(const abbe_renderer *renderer, abbe_error *error);
+
+/* Draws a frame in a context of its own; desc's progress stops it. */
+typedef void abbe_renderer_draw_ahead(const abbe_scene *scene, const abbe_render_desc *desc);
+/* Begins such a thread, where it serves and there is none yet. */
+void abbe_renderer_thread_ahead(abbe_renderer *renderer, const abbe_scene *scene,
+                                abbe_renderer_draw_ahead *draw);
+/* Begins to compile the camera's programs beside, where that serves and nothing does so yet. */
+void abbe_renderer_begin_ahead(abbe_renderer *renderer, const abbe_scene *scene);
+/* Waits for them, as long as whoever watches lets it. */
+void abbe_renderer_await_ahead(abbe_renderer *renderer);
+/* Has it stop after the program that it is at, and waits for that. */
+void abbe_renderer_end_ahead(abbe_renderer *renderer);
 
 /* A stage's passes, made in the frame's order and freed in the other. */
 abbe_result abbe_renderer_make_stage(abbe_renderer *renderer, abbe_pass_stage stage,

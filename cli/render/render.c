@@ -257,6 +257,7 @@ static abbe_result render(request *q, const abbe_scene *scene, abbe_context *con
   desc.progress = abbe_progress_update;
   desc.progress_user = &preparing;
   desc.compiling = say_compiling;
+  desc.compiles_beside = true;
   abbe_progress_begin(&preparing.bar, "prepare", q->quiet);
   abbe_result result = abbe_renderer_make(context, scene, &desc, &renderer, error);
   const double prepared_s = abbe_progress_seconds(&preparing.bar);

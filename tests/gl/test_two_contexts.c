@@ -1,6 +1,7 @@
 /* Renderers on contexts of their own in one process: each draws what it draws alone, whoever drew
  * before it, and outlives the others. */
 #include "gl/device/context_backend.h"
+#include "gl/renderer_state.h"
 #include "tests/gl/frame.h"
 #include "tests/random.h"
 
@@ -224,4 +225,63 @@ TEST(progress_may_draw_elsewhere) {
     abbe_renderer_free(renderer[i]);
     abbe_context_free(on[i]);
   }
+}
+
+static bool is_begun_by(const char *text, const char *const *names) {
+  while (*names != NULL && strncmp(text, *names, strlen(*names)) != 0) names++;
+  return *names != NULL;
+}
+
+static bool has_program(const abbe_gpu_store *store, const char *text) {
+  for (size_t i = 0; i < store->count; i++)
+    if (store->item[i].key.kind == ABBE_STORED_PROGRAM &&
+        strcmp(store->item[i].key.text, text) == 0)
+      return true;
+  return false;
+}
+
+/* A renderer that draws with the camera alone, and smaller, has all of another's programs but those
+ * of its light. */
+TEST(what_is_compiled_ahead_is_what_the_camera_needs) {
+  static const char *const of_light[] = {"photon_", "light_fit", "map_", NULL};
+  abbe_render_desc whole = tiny, small = tiny;
+  whole.width = 8 * small.width;
+  whole.height = 8 * small.height;
+  small.camera_alone = true;
+  abbe_context *on = context = make();
+  for (int i = 0; i < SCENES; i++) {
+    abbe_renderer *renderer = make_renderer(&scenes[i], &whole);
+    small.camera_tiles = renderer->atlas.used;
+    abbe_renderer *ahead = make_renderer(&scenes[i], &small);
+    const abbe_gpu_store *has = &ahead->gpu.store, *needs = &renderer->gpu.store;
+    size_t found = 0;
+    draw_frame(renderer);
+    OK(abbe_renderer_frame(ahead, NULL, NULL, NULL, &error));
+    for (size_t k = 0; k < needs->count; k++) {
+      const char *text = needs->item[k].key.text;
+      if (needs->item[k].key.kind != ABBE_STORED_PROGRAM || is_begun_by(text, of_light)) continue;
+      if (!has_program(has, text)) fail_msg("it lacks %.60s", text);
+      found++;
+    }
+    assert_true(found > 5);
+    abbe_renderer_free(renderer);
+    abbe_renderer_free(ahead);
+  }
+  abbe_context_free(on);
+}
+
+/* Beside one that compiles ahead for it, the light and the picture are the same; and it may end at
+ * any time. */
+TEST(one_compiles_ahead_of_another) {
+  abbe_context *on = make();
+  for (int i = 0; i < SCENES; i++) {
+    abbe_renderer *renderer = make_on(on, i);
+    abbe_renderer_begin_ahead(renderer, &scenes[i]);
+    assert_non_null(renderer->ahead);
+    assert_draws(renderer, &alone[i], true);
+    assert_null(renderer->ahead);
+    abbe_renderer_begin_ahead(renderer, &scenes[i]);
+    abbe_renderer_free(renderer);
+  }
+  abbe_context_free(on);
 }

@@ -161,6 +161,12 @@ typedef struct abbe_render_desc {
   /* Called once, with progress_user, when the driver compiles shaders that it does not know: it
    * takes seconds, the first time on a machine. May be NULL. */
   void (*compiling)(void *user);
+  /* Then a second thread compiles what the camera's passes need, beside the light's. The scene has
+   * to live until the first frame has ended or the renderer is freed. It serves where a processor
+   * runs the shaders, and elsewhere does nothing. */
+  bool compiles_beside;
+  /* What that thread draws: of the light, maps that hold nothing, with tiles or without. */
+  bool camera_alone, camera_tiles;
 } abbe_render_desc;
 
 /* Wavelengths that the camera takes of a pixel at the most, of a request that is resolved: of a
