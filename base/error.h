@@ -14,27 +14,27 @@ extern "C" {
 #endif
 
 /* One list makes the codes and their texts: X(code, text). */
-#define ABBE_RESULTS(X)                                                    \
-  X(OK, "done")                                                            \
-  X(INVALID_ARGUMENT, "a value is outside what the function accepts")      \
-  X(NO_MEMORY, "memory could not be allocated")                            \
-  X(IO, "a file could not be read or written")                             \
-  X(PARSE, "a file is not well formed")                                    \
-  X(SCHEMA, "a file is well formed but says something it may not say")     \
-  X(NOT_FOUND, "a name is not known")                                      \
-  X(OUT_OF_RANGE, "a wavelength is outside the range of its data")         \
-  X(GEOMETRY, "a shape cannot be used as it is")                           \
-  X(UNSUPPORTED, "the scene asks for something that is not modelled")      \
-  X(GL, "the graphics context failed")                                     \
-  X(COLOUR, "the colour configuration failed")                             \
-  X(CANCELLED, "the work was cancelled")                                   \
+#define ABBE_RESULTS(X)                                                                            \
+  X(OK, "done")                                                                                    \
+  X(INVALID_ARGUMENT, "a value is outside what the function accepts")                              \
+  X(NO_MEMORY, "memory could not be allocated")                                                    \
+  X(IO, "a file could not be read or written")                                                     \
+  X(PARSE, "a file is not well formed")                                                            \
+  X(SCHEMA, "a file is well formed but says something it may not say")                             \
+  X(NOT_FOUND, "a name is not known")                                                              \
+  X(OUT_OF_RANGE, "a wavelength is outside the range of its data")                                 \
+  X(GEOMETRY, "a shape cannot be used as it is")                                                   \
+  X(UNSUPPORTED, "the scene asks for something that is not modelled")                              \
+  X(GL, "the graphics context failed")                                                             \
+  X(COLOUR, "the colour configuration failed")                                                     \
+  X(CANCELLED, "the work was cancelled")                                                           \
   X(TOLERANCE, "a comparison was out of tolerance")
 
 typedef enum abbe_result {
 #define ABBE_RESULT_ENUM(code, text) ABBE_##code,
   ABBE_RESULTS(ABBE_RESULT_ENUM)
 #undef ABBE_RESULT_ENUM
-  ABBE_RESULT_COUNT
+      ABBE_RESULT_COUNT
 } abbe_result;
 
 /* The last failure: its code and one sentence that names the file, line, key and value concerned
@@ -53,16 +53,17 @@ const char *abbe_result_text(abbe_result result);
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
-abbe_result abbe_error_set(abbe_error *error, abbe_result code, const char *format, ...);
+abbe_result
+abbe_error_set(abbe_error *error, abbe_result code, const char *format, ...);
 /* The same for a function with arguments of its own; prefix ("" for none) comes first. */
 abbe_result abbe_error_set_list(abbe_error *error, abbe_result code, const char *prefix,
                                 const char *format, va_list arguments);
 
 /* Returns from the calling function with the result of the call unless that is ABBE_OK. */
-#define ABBE_TRY(...)                        \
-  do {                                       \
-    const abbe_result tried = (__VA_ARGS__); \
-    if (tried != ABBE_OK) return tried;      \
+#define ABBE_TRY(...)                                                                              \
+  do {                                                                                             \
+    const abbe_result tried = (__VA_ARGS__);                                                       \
+    if (tried != ABBE_OK) return tried;                                                            \
   } while (0)
 
 #ifdef __cplusplus

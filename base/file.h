@@ -36,8 +36,8 @@ abbe_result abbe_file_open(const char *path, FILE **stream, size_t *size, abbe_e
 abbe_result abbe_file_read(const char *path, size_t max_size, char **data, size_t *size,
                            abbe_error *error);
 
-/* The same for text in whatever encoding (html_text.h): ABBE_PARSE for a file that is none, such as
- * a spreadsheet or an archive, before anything of it is quoted. */
+/* The same for text in whatever encoding (foreign_text.h): ABBE_PARSE for a file that is none, such
+ * as a spreadsheet or an archive, before anything of it is quoted. */
 abbe_result abbe_file_read_text(const char *path, size_t max_size, char **data, size_t *size,
                                 abbe_error *error);
 

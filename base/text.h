@@ -1,6 +1,6 @@
 /* text.h: the letters of UTF-8, and text of whatever origin as what a terminal may show.
  *
- * It allocates nothing and cannot fail. Other encodings are html_text.h's.
+ * It allocates nothing and cannot fail. Other encodings are foreign_text.h's.
  */
 #ifndef ABBE_BASE_TEXT_H
 #define ABBE_BASE_TEXT_H

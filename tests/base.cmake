@@ -1,4 +1,4 @@
-foreach(name error html_text
+foreach(name error foreign_text
         number report text_cursor
         text_diff text yaml yaml_edit)
   abbe_test(${name} cpu abbe_base)

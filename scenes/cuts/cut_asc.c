@@ -1,6 +1,6 @@
 #include "scenes/cuts/cut_file.h"
 
-#include "base/html_text.h"
+#include "base/foreign_text.h"
 #include "base/number.h"
 #include "scenes/cuts/cut.h"
 

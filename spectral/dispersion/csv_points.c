@@ -1,7 +1,7 @@
 #include "spectral/dispersion/csv_points.h"
 
 #include "base/file.h"
-#include "base/html_text.h"
+#include "base/foreign_text.h"
 #include "base/number.h"
 
 #include <ctype.h>

@@ -1,7 +1,7 @@
 #include "spectral/formats/material_import.h"
 
 #include "base/file.h"
-#include "base/html_text.h"
+#include "base/foreign_text.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "spectral/dispersion/points.h"

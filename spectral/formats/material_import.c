@@ -1,7 +1,7 @@
 #include "spectral/formats/material_import.h"
 
 #include "base/file.h"
-#include "base/html_text.h"
+#include "base/foreign_text.h"
 #include "base/number.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/store/material_store.h"

@@ -1,6 +1,6 @@
 #include "spectral/formats/material_import.h"
 
-#include "base/html_text.h"
+#include "base/foreign_text.h"
 #include "base/number.h"
 #include "base/yaml/yaml.h"
 #include "spectral/dispersion/points.h"

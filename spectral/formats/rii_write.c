@@ -1,6 +1,6 @@
 #include "spectral/formats/material_write.h"
 
-#include "base/html_text.h"
+#include "base/foreign_text.h"
 #include "base/number.h"
 #include "base/yaml/yaml_edit_text.h"
 #include "spectral/materials/absorption.h"

@@ -191,17 +191,17 @@ const char *abbe_model_name(abbe_model model);
  * default and help. The program's options, the library's keys and the checks of a request come from
  * it. A setting that is a pair or a list (size, range, polygons) or a file is its reader's own. */
 
-typedef enum abbe_setting_kind {
+typedef enum abbe_render_setting_kind {
   ABBE_SETTING_COUNT,  /* size_t */
   ABBE_SETTING_NUMBER, /* double */
   ABBE_SETTING_FLAG,   /* bool */
   ABBE_SETTING_CHOICE  /* an enum, the number of one of the names */
-} abbe_setting_kind;
+} abbe_render_setting_kind;
 
 typedef struct abbe_render_setting {
   const char *key;    /* the library's */
   const char *option; /* the program's, without "--"; NULL: it has none of its own */
-  abbe_setting_kind kind;
+  abbe_render_setting_kind kind;
   size_t offset;        /* in abbe_render_desc */
   double least, most;   /* limits of a count or number; a request may have 0: the default */
   bool stays_open;      /* a request that is resolved may still have 0: the scene decides */

@@ -1,6 +1,6 @@
 /* Wavefront OBJ: polygons by points, texture coordinates and normals; materials by their names. */
 #include "base/file.h"
-#include "base/html_text.h"
+#include "base/foreign_text.h"
 #include "base/number.h"
 #include "scenes/import/mesh/mesh_reading.h"
 

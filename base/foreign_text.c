@@ -1,4 +1,4 @@
-#include "base/html_text.h"
+#include "base/foreign_text.h"
 
 #include "base/text.h"
 

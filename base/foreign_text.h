@@ -1,10 +1,11 @@
-/* html_text.h: bytes of a text file, in whatever encoding, as clean UTF-8.
+/* foreign_text.h: text of others as clean UTF-8: bytes of a file in whatever encoding, and scraps
+ * of HTML.
  *
  * Catalogues come as ASCII, UTF-8, UTF-16 with or without a byte-order mark, or Windows-1252. It
  * finds out which, converts, and makes every line end a single newline. It knows no format.
  */
-#ifndef ABBE_BASE_HTML_TEXT_H
-#define ABBE_BASE_HTML_TEXT_H
+#ifndef ABBE_BASE_FOREIGN_TEXT_H
+#define ABBE_BASE_FOREIGN_TEXT_H
 
 #include "base/error.h"
 
@@ -23,13 +24,10 @@ abbe_result abbe_encoding_decode(const char *bytes, size_t size, char **text, si
  * Such files hold zeros or many control characters in their first 4096 bytes. */
 bool abbe_encoding_is_binary(const char *bytes, size_t size);
 
-/* The plain text of a scrap of HTML, as references in databases are written.
- *
- * Tags go, the common entities become their letters, and runs of blanks become one. It is no
- * parser of pages: scripts and styles are text to it. */
-
-/* The text of html in UTF-8, malloc'd, at most max bytes and cut between letters; NULL where there
- * is no memory. A '<' that begins no tag stays. */
+/* The plain text of a scrap of HTML, as references in databases are written, in UTF-8: malloc'd, at
+ * most max bytes and cut between letters; NULL where there is no memory. Tags go, the common
+ * entities become their letters, and runs of blanks become one; scripts, styles and a '<' that
+ * begins no tag stay. */
 char *abbe_html_text(const char *html, size_t max);
 /* Its inverse: '&', '<' and '>' as entities; malloc'd, NULL where there is no memory. */
 char *abbe_html_escape(const char *text);

@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "base/html_text.h"
+#include "base/foreign_text.h"
 
 static void becomes(const char *html, const char *wanted) {
   FREED char *text = abbe_html_text(html, 1000);
