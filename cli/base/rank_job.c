@@ -1,10 +1,5 @@
 #include "cli/base/rank_job.h"
 
-abbe_command_part abbe_rank_job_part(const abbe_rank_job *job) {
-  return job == NULL ? (abbe_command_part){0}
-                     : (abbe_command_part){job->ranks.rank, job->ranks.count};
-}
-
 bool abbe_rank_job_is_silent(const abbe_rank_job *job) {
   return job != NULL && job->ranks.rank > 0;
 }

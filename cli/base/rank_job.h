@@ -17,8 +17,6 @@ typedef struct abbe_rank_job {
 
 /* Each of these takes NULL for one process alone. */
 
-/* The rank's part of work that goes by pieces: every count-th from the rank-th on. */
-abbe_command_part abbe_rank_job_part(const abbe_rank_job *job);
 /* Whether it is a rank that leaves it to rank 0 to write and to say what came of it. */
 bool abbe_rank_job_is_silent(const abbe_rank_job *job);
 /* abbe_ranks_agree; own for one process. */
@@ -26,12 +24,6 @@ abbe_result abbe_rank_job_agree(const abbe_rank_job *job, abbe_result own, abbe_
 /* abbe_command_end, but only one rank reports why all end. */
 int abbe_rank_job_end(const abbe_rank_job *job, const char *program, abbe_result result,
                       abbe_error *error);
-
-/* `abbe render`, and its frames by several processes, as cli/mpi starts them. */
-
-/* --turntable or --frames A:B: each rank draws frames of its own, rank 0 makes the picture that
- * moves. Gives the exit code. */
-int abbe_render_by_ranks(int argc, char **argv, abbe_rank_job *job);
 
 /* `abbe trace`, and the same by several processes, as cli/mpi starts them. */
 

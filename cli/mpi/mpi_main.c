@@ -72,35 +72,19 @@ static void say(const char *message) {
   fputs(message, stderr);
 }
 
-/* What ranks share, by the word that names it. */
-static const struct {
-  const char *word, *program, *shared;
-  int (*run)(int argc, char **argv, abbe_rank_job *job);
-} commands[] = {
-    {"trace", "abbe-mpi trace", "passes, or frames over time", abbe_trace_by_ranks},
-    {"render", "abbe-mpi render", "frames from all around, or over time", abbe_render_by_ranks}};
-enum { COMMANDS = sizeof commands / sizeof *commands };
-
 static int help(FILE *to) {
-  if (own_rank > 0) return to == stdout ? ABBE_EXIT_DONE : ABBE_EXIT_USAGE;
-  fprintf(to, "abbe-mpi " ABBE_VERSION ": the work of one command by the ranks of an MPI job\n\n"
-              "usage: mpirun abbe-mpi COMMAND [OPTION…] FILE\n\n"
-              "Options are those of abbe COMMAND. Ranks share\n");
-  for (int i = 0; i < COMMANDS; i++)
-    fprintf(to, "  %-7s %s\n", commands[i].word, commands[i].shared);
-  fprintf(to, "\n  mpirun -n 4 abbe-mpi trace scenes/gem.yaml -o gem.exr --spp 256 --resume\n\n"
-              "Exit codes: 0 done, 1 failed, 2 used wrongly.\n");
+  if (own_rank == 0)
+    fputs("abbe-mpi " ABBE_VERSION
+          ": a trace by the ranks of an MPI job, which share its passes\n\n"
+          "usage: mpirun abbe-mpi trace [OPTION…] FILE\n\n"
+          "Options are those of abbe trace.\n\n"
+          "  mpirun -n 4 abbe-mpi trace scenes/gem.yaml -o gem.exr --spp 256 --resume\n\n"
+          "Exit codes: 0 done, 1 failed, 2 used wrongly.\n",
+          to);
   return to == stdout ? ABBE_EXIT_DONE : ABBE_EXIT_USAGE;
 }
 
-/* The command that the arguments begin with, or COMMANDS. */
-static int find_command(int argc, char **argv) {
-  for (int i = 0; i < COMMANDS; i++)
-    if (argc >= 2 && strcmp(argv[1], commands[i].word) == 0) return i;
-  return COMMANDS;
-}
-
-static int run(int argc, char **argv, int command) {
+static int run(int argc, char **argv) {
   int count;
   MPI_Comm_size(MPI_COMM_WORLD, &count);
   MPI_Type_contiguous(sizeof(abbe_whole_sum), MPI_BYTE, &sum_type);
@@ -110,10 +94,8 @@ static int run(int argc, char **argv, int command) {
                        .ready = ready};
   if (own_rank > 0) tell_ready(true);
   if (!is_ready && own_rank > 0) return ABBE_EXIT_USAGE;
-  char program[64];
-  snprintf(program, sizeof program, "%s", commands[command].program);
-  argv[1] = program;
-  const int code = commands[command].run(argc - 1, argv + 1, &job);
+  argv[1] = (char[]){"abbe-mpi trace"};
+  const int code = abbe_trace_by_ranks(argc - 1, argv + 1, &job);
   if (job.alone && count > 1) {
     has_failed = true;
     fflush(NULL);
@@ -138,8 +120,7 @@ int main(int argc, char **argv) {
   if (argc == 2 && strcmp(argv[1], "--version") == 0)
     return own_rank == 0 && printf("%s\n", argp_program_version) < 0;
   if (argc == 2 && strcmp(argv[1], "--help") == 0) return help(stdout);
-  const int command = find_command(argc, argv);
-  if (command == COMMANDS) return help(stderr);
+  if (argc < 2 || strcmp(argv[1], "trace") != 0) return help(stderr);
   is_ready = false;
-  return run(argc, argv, command);
+  return run(argc, argv);
 }

@@ -237,34 +237,21 @@ static void man_page_end(FILE *out) {
 
 /* abbe-mpi's, whose options are another page's. */
 static void man_page_ranks(FILE *out, const char *version) {
-  begin(out, "abbe-mpi", "the work of one command by the ranks of an MPI job", version);
-  fputs(".SH SYNOPSIS\n.B mpirun\n[\\fIOPTION\\fR…]\n.B abbe\\-mpi\n\\fICOMMAND\\fR "
-        "[\\fIOPTION\\fR…] \\fIFILE\\fR\n",
-        out);
-  fputs(".SH DESCRIPTION\nRanks share the work of one command. What comes of it is that of one "
-        "process, whatever the number of ranks. Rank 0 alone writes it and says how far the work "
-        "is. A rank that is killed ends the job and costs what it had not written; the same "
-        "command goes on.\n",
+  begin(out, "abbe-mpi", "a trace by the ranks of an MPI job", version);
+  fputs(".SH SYNOPSIS\n.B mpirun\n[\\fIOPTION\\fR…]\n.B abbe\\-mpi trace\n[\\fIOPTION\\fR…] "
+        "\\fIFILE\\fR\n",
         out);
   fputs(
-      ".SH COMMANDS\n"
-      ".TP\n.B trace\nRanks trace passes; the sums are put together exactly, to the last bit. "
-      "With\n.B \\-\\-frames\nthey trace frames. Options are those of\n.BR abbe\\-trace (1),\nbut\n"
-      ".BR \\-\\-passes ,\n.B \\-\\-merge\nand\n.BR \\-\\-rates .\nEach rank keeps a checkpoint, "
-      "named by its number; with\n.B \\-\\-resume\na job that was ended goes on from them.\n"
-      ".TP\n.B render\nRanks draw frames of\n.B \\-\\-turntable\nor\n.BR \\-\\-frames ;\nwith\n"
-      ".B \\-\\-resume\nthose alone that are not there. Options are those of\n"
-      ".BR abbe\\-render (1),\nbut\n.BR \\-\\-part ,\n.B \\-\\-merge\nand\n.BR "
-      "\\-\\-budget\\-ms .\n"
-      ".TP\n.B gem optimise\nRanks judge pairs of angles, kept beside the file of\n"
-      ".BR \\-\\-pairs ,\n.B \\-o\nor\n.BR \\-\\-plot ,\nof which one must be given. Options are "
-      "those of\n.BR abbe\\-gem\\-optimise (1),\nbut\n.B \\-\\-part\nand\n.BR \\-\\-merge .\n",
+      ".SH DESCRIPTION\nRanks share the passes of a trace; the sums are put together exactly, so "
+      "what comes of it is that of one process, whatever the number of ranks. Rank 0 alone "
+      "writes it and says how far the work is. Options are those of\n.BR abbe\\-trace (1),\nbut\n"
+      ".BR \\-\\-passes ,\n.BR \\-\\-merge ,\n.B \\-\\-frames\nand\n.BR \\-\\-rates .\nEach "
+      "rank keeps a checkpoint, named by its number. A rank that is killed ends the job and costs "
+      "what it had not written; with\n.B \\-\\-resume\nit goes on.\n",
       out);
   fputs(".SH EXAMPLES\n", out);
   static const char example[] =
-      "  mpirun -n 4 abbe-mpi trace scenes/gem.yaml -o gem.exr --spp 256 --resume\n"
-      "  mpirun -n 4 abbe-mpi render scenes/stone.yaml --turntable 72 --png stone.png\n"
-      "  mpirun -n 4 abbe-mpi gem optimise pear.asc --material ruby --grid 201x201 -o best.asc\n";
+      "  mpirun -n 4 abbe-mpi trace scenes/gem.yaml -o gem.exr --spp 256 --resume\n";
   put_text(out, example, strlen(example));
   end(out, "abbe-trace");
 }

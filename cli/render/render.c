@@ -1,7 +1,6 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
-#include "cli/base/rank_job.h"
 #include "cli/options/own_context.h"
 #include "cli/options/picture_options.h"
 #include "cli/options/scene_input.h"
@@ -47,19 +46,6 @@ static const struct argp_option options[] = {
     {"backend", OPTION_BACKEND, "NAME", 0, "cpu, gpu, or auto: a GPU where there is one (auto)", 0},
     {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
     {0}};
-
-/* Frames that ranks draw must be alike, whatever the clock of each says. */
-static void check_ranks(const request *q, struct argp_state *state) {
-  if (q->job == NULL) return;
-  if (q->series.count == 0)
-    argp_error(state, "ranks share frames: give --turntable N or --frames A:B; one picture is for "
-                      "one process: abbe render");
-  if (q->series.part.parts > 0 || q->series.merge)
-    argp_error(state, "--part and --merge are for one process: abbe render");
-  if (q->preset.request.budget_ms > 0)
-    argp_error(state, "--budget-ms may choose otherwise for each rank: give --preset or "
-                      "--max-error");
-}
 
 static const abbe_take takes[] = {
     ABBE_TAKE_CHILD(request, 0, render),
@@ -128,7 +114,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
                  q->series.around ? "--turntable" : "--frames A:B");
     q->series.stated = q->screen.stated || q->png == NULL;
     abbe_frame_series_check(&q->series, q->png, state);
-    check_ranks(q, state);
     if (q->series.merge && q->png == NULL)
       argp_error(state, "--merge makes a picture that moves: give --png FILE.png");
     if (q->errors.mean && q->aovs)
@@ -380,31 +365,7 @@ static abbe_result choose_and_draw(request *q, const abbe_scene *scene, abbe_err
   return result;
 }
 
-/* Each frame is some rank's; the picture that moves is made once all are there. */
-static abbe_result draw_together(request *q, const abbe_scene *scene, abbe_result before,
-                                 abbe_error *error) {
-  before = abbe_rank_job_agree(q->job, before, error);
-  if (before == ABBE_OK && q->series.count > 0)
-    before = abbe_frame_series_record(&q->series, scene, error);
-  if (before != ABBE_OK || q->job == NULL)
-    return before == ABBE_OK ? choose_and_draw(q, scene, error) : before;
-  q->series.part = abbe_rank_job_part(q->job);
-  const bool draws = q->series.part.part < q->series.count;
-  abbe_result result = draws ? choose_and_draw(q, scene, error) : ABBE_OK;
-  result = abbe_rank_job_agree(q->job, result, error);
-  if (result == ABBE_OK && q->png != NULL && !abbe_rank_job_is_silent(q->job))
-    result = abbe_frame_series_merge(&q->series, q->png, error);
-  return result;
-}
-
-/* Rank 0 alone says what came of it. */
-static void be_silent(request *q) {
-  q->quiet = true;
-  q->json = false;
-  q->stats = NULL;
-}
-
-static int run_command(int argc, char **argv, abbe_rank_job *job) {
+int abbe_command_render(int argc, char **argv) {
   const struct argp_child children[] = {
       {abbe_render_options_argp(), 0, "Speed and accuracy:", 1},
       {&abbe_map_options_argp, 0, "Spectral map:", 3},
@@ -442,11 +403,8 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
                .preset.tool = -1,
                .errors.program = argv[0],
                .series.program = argv[0],
-               .screen.program = argv[0],
-               .job = job};
+               .screen.program = argv[0]};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
-  if (job != NULL) job->ready();
-  if (abbe_rank_job_is_silent(job)) be_silent(&q);
   abbe_error error = {0};
   abbe_scene scene = {0};
   /* The AOVs show where the caustic is, whose error is summed up. */
@@ -463,18 +421,11 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
   if (loaded && q.errors.asked) result = abbe_error_bars_check(q.render.desc.profile, NULL, &error);
   if (result == ABBE_OK)
     result = abbe_map_options_resolve(&q.map, &scene, q.render.desc.map_size == 0, &error);
-  result = draw_together(&q, &scene, result, &error);
+  if (result == ABBE_OK && q.series.count > 0)
+    result = abbe_frame_series_record(&q.series, &scene, &error);
+  if (result == ABBE_OK) result = choose_and_draw(&q, &scene, &error);
   abbe_frame_series_free(&q.series);
   abbe_scene_free(&scene);
   abbe_caustic_volume_free(&q.render.volume);
-  if (abbe_rank_job_is_silent(job) && result == ABBE_CANCELLED) return ABBE_EXIT_FAILED;
   return abbe_render_options_end(&q.render, loaded, result, &error);
-}
-
-int abbe_command_render(int argc, char **argv) {
-  return run_command(argc, argv, NULL);
-}
-
-int abbe_render_by_ranks(int argc, char **argv, abbe_rank_job *job) {
-  return run_command(argc, argv, job);
 }

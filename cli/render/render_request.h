@@ -4,7 +4,6 @@
 #define ABBE_CLI_RENDER_RENDER_REQUEST_H
 
 #include "cli/base/command.h"
-#include "cli/base/rank_job.h"
 #include "cli/options/frame_series.h"
 #include "cli/options/picture_options.h"
 #include "cli/render/render_options.h"
@@ -58,7 +57,6 @@ typedef struct abbe_render_request {
   const char *picture_note;    /* on how that was chosen, or NULL */
   abbe_error_options errors;
   abbe_frame_series series; /* --turntable, --frames A:B; zeroed but for program */
-  abbe_rank_job *job;       /* the ranks that share the frames; NULL: one process */
   const char *exr, *png, *stats;
   bool aovs, quiet, json;
   size_t frames, bands;

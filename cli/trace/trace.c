@@ -389,19 +389,6 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   return result;
 }
 
-/* Each rank traces frames of its own. */
-static abbe_result trace_frames(request *q, const abbe_rank_job *job, const abbe_scene *scene,
-                                abbe_error *error) {
-  if (job == NULL) return abbe_trace_frames(q, scene, run, error);
-  q->ranks = NULL;
-  q->series.part = abbe_rank_job_part(job);
-  abbe_result result = abbe_trace_frames(q, scene, run, error);
-  result = abbe_rank_job_agree(job, result, error);
-  if (result == ABBE_OK && q->png != NULL && !abbe_rank_job_is_silent(job))
-    result = abbe_frame_series_merge(&q->series, q->png, error);
-  return result;
-}
-
 static int run_command(int argc, char **argv, abbe_rank_job *job) {
   static const struct argp_child children[] = {
       {&abbe_map_options_argp, 0, "Receiver map:", 3},
@@ -457,13 +444,13 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
   if (result == ABBE_OK && q.series.count > 0)
     result = abbe_frame_series_record(&q.series, &scene, &error);
   if (result == ABBE_OK)
-    result = q.series.count > 0 ? trace_frames(&q, job, &scene, &error) : run(&q, &scene, &error);
+    result =
+        q.series.count > 0 ? abbe_trace_frames(&q, &scene, run, &error) : run(&q, &scene, &error);
   abbe_frame_series_free(&q.series);
   free(q.checkpoint_path);
   free(q.parts);
   abbe_scene_free(&scene);
-  if (job != NULL)
-    job->alone = q.series.count == 0 && result != ABBE_OK && result != ABBE_CANCELLED;
+  if (job != NULL) job->alone = result != ABBE_OK && result != ABBE_CANCELLED;
   return abbe_rank_job_end(job, argv[0], result, &error);
 }
 

@@ -190,8 +190,8 @@ void abbe_trace_frames_check(const abbe_trace_request *q, struct argp_state *sta
   abbe_frame_series_check(s, q->png, state);
   if (s->count == 0 && (s->per_second > 0 || s->part.parts > 0))
     argp_error(state, "--%s goes with --frames A:B", s->per_second > 0 ? "fps" : "part");
-  if (s->part.parts > 0 && q->ranks != NULL)
-    argp_error(state, "--part is for one process: abbe trace");
+  if (s->count > 0 && q->ranks != NULL)
+    argp_error(state, "ranks share passes of one picture; frames go by abbe trace --part K/N");
   if (s->part.parts > 0 && s->part.part >= s->count)
     argp_error(state, "--part %zu/%zu has none of %zu frames", s->part.part, s->part.parts,
                s->count);

@@ -133,4 +133,11 @@ static inline double image_max(const abbe_image *image, size_t channel) {
   return most;
 }
 
+/* Of one channel, over all pixels. */
+static inline double channel_mean(const abbe_image *image, const char *name) {
+  const size_t channel = abbe_image_find_channel(image, name);
+  assert_true(channel < image->channels);
+  return image_sum(image, channel) / (double)(image->width * image->height);
+}
+
 #endif

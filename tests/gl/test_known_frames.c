@@ -17,15 +17,9 @@ static void draw(const char *text, const abbe_render_desc *desc, abbe_image *aov
   *aovs = aovs_of(renderer);
 }
 
-static double mean_of(const abbe_image *image, const char *name) {
-  const size_t channel = abbe_image_find_channel(image, name);
-  assert_true(channel < image->channels);
-  return image_sum(image, channel) / (double)(image->width * image->height);
-}
-
 static double drawn_mean(const char *text, const abbe_render_desc *desc, const char *channel) {
   FILLED(abbe_image, aovs, draw(text, desc, &aovs));
-  return mean_of(&aovs, channel);
+  return channel_mean(&aovs, channel);
 }
 
 /* ---- the ring ---- */

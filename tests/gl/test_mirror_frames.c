@@ -39,12 +39,6 @@ static void frame_free(frame *f) {
   abbe_image_free(&f->aovs);
 }
 
-static double mean_of(const abbe_image *image, const char *name) {
-  const size_t channel = abbe_image_find_channel(image, name);
-  assert_true(channel < image->channels);
-  return image_sum(image, channel) / (double)(image->width * image->height);
-}
-
 /* Irradiance of a source of intensity 1 at (0, 0, 1) on a square of the floor about (x, 0, 0), its
  * mean. */
 static double mean_irradiance(double x, double half) {
@@ -76,7 +70,7 @@ TEST(a_ball_shines_evenly) {
        &desc, &f);
   const double intensity = 0.8 * 0.005 * 0.005 / 4;
   const double known = intensity * mean_irradiance(-0.7, 0.6 * tan(20 * ABBE_PI / 180)) / ABBE_PI;
-  const double seen = mean_of(&f.aovs, "caustic.Y");
+  const double seen = channel_mean(&f.aovs, "caustic.Y");
   print_message("%.4f of the ball's light\n", seen / known);
   assert_near(seen / known, 1, 0.02);
   assert_near(f.energy.absorbed / f.energy.reached, 0.2, 1e-4);
@@ -128,7 +122,7 @@ static void check_pane(const char *angle) {
     const double x = i == 0 ? -0.1 : 1.1, r2 = (0.2 - x) * (0.2 - x) + 0.01 + 0.49;
     known[i] = (i == 0 ? 1 : 0.9) * 0.7 / (r2 * sqrt(r2)) / ABBE_PI;
   }
-  const double image = mean_of(&f.aovs, "caustic.Y"), lamp = mean_of(&f.aovs, "direct.Y");
+  const double image = channel_mean(&f.aovs, "caustic.Y"), lamp = channel_mean(&f.aovs, "direct.Y");
   print_message("%.4f of the image's light, %.4f of the lamp's\n", image / known[1],
                 lamp / known[0]);
   assert_near(image / known[1], 1, 0.015);
@@ -170,9 +164,9 @@ TEST(a_mirrors_shadow_may_be_lit_by_another) {
                                               "0.8"),
        &desc, &f);
   const double known = 0.8 * sqrt(0.5) / ABBE_PI;
-  print_message("%.4f of the light\n", mean_of(&f.aovs, "caustic.Y") / known);
-  assert_near(mean_of(&f.aovs, "caustic.Y") / known, 1, 0.01);
-  assert_near(mean_of(&f.aovs, "direct.Y"), 0, 1e-6);
+  print_message("%.4f of the light\n", channel_mean(&f.aovs, "caustic.Y") / known);
+  assert_near(channel_mean(&f.aovs, "caustic.Y") / known, 1, 0.01);
+  assert_near(channel_mean(&f.aovs, "direct.Y"), 0, 1e-6);
   assert_near(f.energy.deposited / (2 * 0.8 * 0.2 * 0.4 * sqrt(0.5)), 1, 5e-3);
 }
 
@@ -230,7 +224,7 @@ TEST(gold_has_its_colour) {
   desc.wavelengths = 21; /* a band's colour and its metal's are each a mean: of 7 bands, 5e-3 */
   FILLED(frame, f, draw(text, &desc, &f));
   static const char *const names[] = {"X", "Y", "Z"};
-  for (int c = 0; c < 3; c++) assert_near(mean_of(&f.picture, names[c]) / known[c], 1, 2e-3);
+  for (int c = 0; c < 3; c++) assert_near(channel_mean(&f.picture, names[c]) / known[c], 1, 2e-3);
 }
 
 /* Glass on silver: light goes through the glass, off the mirror, and back through the glass. */

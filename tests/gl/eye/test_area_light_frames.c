@@ -5,19 +5,13 @@
 #include "base/maths.h"
 #include "validation/trace/tracer/tracer.h"
 
-static double mean_of(const abbe_image *image, const char *name) {
-  const size_t channel = abbe_image_find_channel(image, name);
-  assert_true(channel < image->channels);
-  return image_sum(image, channel) / (double)(image->width * image->height);
-}
-
 /* Mean Y of the picture, as the renderer draws it. */
 static double drawn(const char *text) {
   const abbe_render_desc desc =
       FIELDS(.width = 8, .height = 8, .supersample = 1, .photons = 128, .map_size = 128,
              .light_points = 4, .space = ABBE_RGB_SPACE_XYZ);
   FILLED(abbe_image, picture, draw_text(text, &desc, &picture));
-  return mean_of(&picture, "Y");
+  return channel_mean(&picture, "Y");
 }
 
 static double traced(const char *text) {
@@ -28,7 +22,7 @@ static double traced(const char *text) {
   OK(abbe_tracer_make(&scene, &desc, &tracer, &error));
   for (int i = 0; i < 8; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
   MADE(abbe_image, picture, abbe_tracer_picture(tracer, &picture, &error));
-  const double seen = mean_of(&picture, "Y");
+  const double seen = channel_mean(&picture, "Y");
   abbe_tracer_free(tracer);
   return seen;
 }
