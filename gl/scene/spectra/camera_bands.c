@@ -268,17 +268,20 @@ static abbe_result join_crystal(const band_set *s, const abbe_scene *scene, cons
   return ABBE_OK;
 }
 
+/* Of glass any axes will do, and of two indices any x. */
 static void place_axes(const abbe_scene *scene, const abbe_plan *plan, float (*texel)[4]) {
+  static const double up[3] = {0, 0, 1};
   for (size_t r = 0; r < plan->refractor_count; r++) {
     const abbe_object *o = &scene->object[plan->refractor_object[r]];
-    if (o->material == NULL || !abbe_material_is_crystal(o->material)) continue;
-    const bool biaxial = abbe_material_is_biaxial(o->material);
+    const bool crystal = o->material != NULL && abbe_material_is_crystal(o->material);
+    const double *z = crystal ? o->axis : up;
     double other[3] = {0}, x[3];
-    other[fabs(o->axis[0]) < 0.6 ? 0 : 1] = 1;
-    abbe_vector_cross(o->axis, other, x); /* any will do of two indices */
+    other[fabs(z[0]) < 0.6 ? 0 : 1] = 1;
+    abbe_vector_cross(z, other, x);
     abbe_vector_normalise(x);
-    abbe_float4_store(o->axis, 0, texel[2 * r]);
-    abbe_float4_store(biaxial ? o->axis_x : x, 0, texel[2 * r + 1]);
+    abbe_float4_store(z, 0, texel[2 * r]);
+    abbe_float4_store(crystal && abbe_material_is_biaxial(o->material) ? o->axis_x : x, 0,
+                      texel[2 * r + 1]);
   }
 }
 
