@@ -188,7 +188,9 @@ static abbe_result note_pair(const place *a, const place *b, double off, abbe_fi
                               ABBE_FINDING_NOTE, &c);
   if (f == NULL) return c.result;
   const place *first = a->row < b->row ? a : b;
-  bool absorbs = a->material->attenuation != NULL || b->material->attenuation != NULL;
+  const bool absorbs = a->material->attenuation != NULL || b->material->attenuation != NULL ||
+                       abbe_material_is_fluorescent(a->material) ||
+                       abbe_material_is_fluorescent(b->material);
   const char *besides = absorbs ? "; absorption is not compared" : "";
   if (off == 0)
     abbe_check_say(&c, &f->evidence, "n is that of %s (line %zu)%s", first->material->name,

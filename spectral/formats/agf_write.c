@@ -18,6 +18,7 @@ typedef enum loss {
   FITS,
   EXTRAORDINARY,
   PLEOCHROISM,
+  FLUORESCENCE,
   EXTRAPOLATE,
   ABSOLUTE,
   EXPANSION,
@@ -35,6 +36,7 @@ static const abbe_summary_row losses[LOSSES] = {
     [FITS] = {ABBE_NOTE_LOST, "AGF has no place for recorded fits"},
     [EXTRAORDINARY] = {ABBE_NOTE_LOST, "AGF has one index a glass: the ordinary or middle one"},
     [PLEOCHROISM] = {ABBE_NOTE_LOST, "AGF has one transmittance a glass: that along x"},
+    [FLUORESCENCE] = {ABBE_NOTE_LOST, "AGF has no place for fluorescence and for what excites it"},
     [EXTRAPOLATE] = {ABBE_NOTE_LOST, "AGF cannot allow use outside the range"},
     [ABSOLUTE] = {ABBE_NOTE_LOST, "AGF's indices are relative to air, and this one is to vacuum"},
     [EXPANSION] = {ABBE_NOTE_LOST, "AGF has no place for the temperatures of expansions"},
@@ -255,6 +257,7 @@ static void count_losses(const abbe_material *m, abbe_summary *t) {
   if (m->fit[0].terms > 0 || m->fit[1].terms > 0) abbe_summary_add(t, FITS, m->name);
   if (abbe_material_is_crystal(m)) abbe_summary_add(t, EXTRAORDINARY, m->name);
   if (abbe_material_is_pleochroic(m)) abbe_summary_add(t, PLEOCHROISM, m->name);
+  if (abbe_material_is_fluorescent(m)) abbe_summary_add(t, FLUORESCENCE, m->name);
   if (m->extrapolate) abbe_summary_add(t, EXTRAPOLATE, m->name);
   if (m->n_absolute) abbe_summary_add(t, ABSOLUTE, m->name);
   for (int i = 0; i < 2; i++)

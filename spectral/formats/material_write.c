@@ -343,7 +343,7 @@ static abbe_result write_formula(const abbe_material *m, const abbe_csv_sampling
 static void note_losses(const abbe_material *m, abbe_report *report) {
   bool more = m->description != NULL || m->warning != NULL || m->comment != NULL ||
               m->catalogue.code != NULL || m->catalogue.density_g_cm3 != 0 || m->fit[0].terms > 0 ||
-              m->published_n_d != 0;
+              m->published_n_d != 0 || abbe_material_is_fluorescent(m);
   abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
                   "a table of points has no place for its name and source%s, but in a comment",
                   more ? ", nor for the rest of the record" : "");

@@ -160,6 +160,8 @@ static void note_losses(const abbe_material *m, abbe_report *report) {
       {abbe_material_is_biaxial(m), "a file of the database has one index: the middle one"},
       {abbe_material_is_uniaxial(m), "a file of the database has one index: the ordinary one"},
       {abbe_material_is_pleochroic(m), "a file of the database has one k: that along x"},
+      {abbe_material_is_fluorescent(m),
+       "the database has no place for fluorescence and for what excites it"},
       {m->extrapolate, "the database cannot allow use outside the range"},
       {table != NULL && m->dispersion.k == NULL &&
            abbe_spectrum_interpolation(table) != ABBE_INTERPOLATION_MONOTONE,

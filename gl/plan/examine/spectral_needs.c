@@ -36,8 +36,6 @@ abbe_result abbe_material_range_make(const abbe_material *material, double min_n
   return abbe_material_n(material, middle_nm, &out->middle_n, error);
 }
 
-enum { RANGE_STEPS = 81 };
-
 /* 1/m: no light is left of a wavelength. */
 #define MOST_PER_M 1e30
 #define MOST_MIRROR_DEPTH 80.0
@@ -66,9 +64,8 @@ double abbe_tint_attenuation(const abbe_scene *scene, const abbe_plan *plan, siz
 static bool is_even(const abbe_scene *scene, const abbe_plan *plan, size_t r) {
   const double min = plan->desc.min_nm, max = plan->desc.max_nm;
   double least = INFINITY, most = 0;
-  for (int i = 0; i < RANGE_STEPS; i++) {
-    const double here =
-        abbe_tint_attenuation(scene, plan, r, min + (max - min) * i / (RANGE_STEPS - 1));
+  for (int i = 0; i < STEPS; i++) {
+    const double here = abbe_tint_attenuation(scene, plan, r, min + (max - min) * i / (STEPS - 1));
     least = fmin(least, here);
     most = fmax(most, here);
   }
@@ -286,10 +283,10 @@ abbe_result abbe_spectral_needs_mirror(const abbe_object *mirror, abbe_plan *pla
                        mirror->mirror_reflectance);
     return ABBE_OK;
   }
-  for (int i = 0; i < RANGE_STEPS; i++) {
+  for (int i = 0; i < STEPS; i++) {
     double n, k;
-    ABBE_TRY(abbe_material_nk(mirror->conductor, min + (max - min) * i / (RANGE_STEPS - 1), &n, &k,
-                              error));
+    ABBE_TRY(
+        abbe_material_nk(mirror->conductor, min + (max - min) * i / (STEPS - 1), &n, &k, error));
     const double reflectance = abbe_optics_fresnel_conductor(1, n, k);
     least = fmin(least, reflectance);
     most = fmax(most, reflectance);
@@ -359,9 +356,8 @@ void abbe_spectral_needs_count(const abbe_scene *scene, abbe_plan *plan) {
 static bool shine_alike(const abbe_scene *scene, double min, double max) {
   const abbe_illuminant *first = &scene->light[0].illuminant;
   for (size_t k = 1; k < scene->light_count; k++)
-    for (int i = 0; i < RANGE_STEPS; i++) {
-      const double from = min + (max - min) * i / RANGE_STEPS,
-                   to = min + (max - min) * (i + 1) / RANGE_STEPS;
+    for (int i = 0; i < STEPS; i++) {
+      const double from = min + (max - min) * i / STEPS, to = min + (max - min) * (i + 1) / STEPS;
       const double share = abbe_weights_band_power(&scene->light[k].illuminant, min, max, from, to);
       if (fabs(share - abbe_weights_band_power(first, min, max, from, to)) > 1e-6) return false;
     }
@@ -491,9 +487,8 @@ void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan) {
       note_film(o, &o->coatings->coating[k], draws_films(scene, o, plan), plan);
     if (o->coatings != NULL && draws_films(scene, o, plan)) note_covered_films(scene, o, plan);
     note_roughness(o, plan);
+    note_pane(o, (plan->desc.min_nm + plan->desc.max_nm) / 2, plan);
   }
-  for (size_t i = 0; i < scene->object_count; i++)
-    note_pane(&scene->object[i], (plan->desc.min_nm + plan->desc.max_nm) / 2, plan);
   note_polarisation(scene, plan);
   if (scene->camera.aperture > 0)
     abbe_plan_note(plan, "the camera's aperture is left out: all is sharp; 'abbe trace' has it");

@@ -17,6 +17,8 @@ static const struct {
 } stones[] = {
     {"diamond", 2.417, 3.52, CLEAR, 0},
     {"ruby", 1.768, 4.00, 0, 45},
+    {"ruby-fluorescent", 1.768, 4.00, 0, 45},
+    {"diamond-fluorescent", 2.417, 3.52, CLEAR, 0},
     {"sapphire", 1.768, 4.00, CLEAR, 0},
     {"sapphire-blue", 1.768, 4.00, 240, 300},
     {"sapphire-pink", 1.768, 4.00, 330, 385},
