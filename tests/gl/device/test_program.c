@@ -30,7 +30,7 @@ static void write_defines(unsigned bits, char *out, size_t size) {
       "#define RECEIVER_ROOM 6\n#define SURFACE_ROOM 6\n#define SPECTRUM_ROOM 14\n"
       "#define BAND_ROOM 140\n#define BAND_SETS 5\n#define HIERARCHY_STACK 24\n#define STEPS 64\n"
       "#define BRIDGE\n#define DOUBTS_BRIDGES\n#define BAND_TURNS 128\n#define BAND_RINGS 12\n"
-      "#define HAZE_BANDS 12\n");
+      "#define HAZE_BANDS 12\n#define PART_SURFACES 2\n");
   for (int i = 0; i < 8; i++)
     if (bits >> i & 1) used += snprintf(out + used, size - (size_t)used, "#define %s\n", names[i]);
 }
