@@ -20,6 +20,18 @@ typedef struct gpu_receiver {
   float anchor[4], u[4], v[4], normal[4], du[4], dv[4];
 } gpu_receiver;
 
+static bool along(const double a[3], const double b[3]) {
+  return fabs(abbe_vector_dot(a, b)) > 1 - 1e-12;
+}
+
+/* Of one material, and a crystal's axes lie alike: else there is a face between them. */
+static bool is_same_stuff(const abbe_object *a, const abbe_object *b) {
+  if (a->material != b->material || a->material == NULL || !abbe_material_is_crystal(a->material))
+    return a->material == b->material;
+  return along(a->axis, b->axis) &&
+         (!abbe_material_is_biaxial(a->material) || along(a->axis_x, b->axis_x));
+}
+
 /* Refractors and the planes of the convex ones. */
 static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
   const abbe_plan *plan = scene->plan;
@@ -44,9 +56,9 @@ static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
     abbe_float4_store(sphere ? object->exact.centre : centre,
                       sphere ? object->exact.radius : sqrt(half), refractor[i].sphere);
     refractor[i].info[0] = (int)plan->model[i];
-    for (size_t k = 0; k <= i; k++) { /* the first of the same material */
+    for (size_t k = 0; k <= i; k++) { /* the first of the same */
       refractor[i].info[3] = (int)k;
-      if (scene->local->object[plan->refractor_object[k]].material == object->material) break;
+      if (is_same_stuff(&scene->local->object[plan->refractor_object[k]], object)) break;
     }
     if (plan->mirror[i]) refractor[i].info[2] = -1;
     refractor[i].info[1] = (int)next;

@@ -130,16 +130,31 @@ Depth wave_attenuation(Crystal c, int r, int wave, vec3 k);
 #endif
 #endif
 
+#ifdef PLEOCHROIC
+bool in_crystal(uint inside);
+
+// Of glass there is no wave, whose field its axes could share.
+void absorb_wave(inout PathState w, int r, float metres) {
+#ifdef KEEPS_TINTS
+  vec3 amount = metres * axis_shares(crystal_of(r), w.wave, w.k);
+  for (int axis = 0; axis < 3; axis++) pass_by(w, r + (axis + 1) * REFRACTORS, amount[axis]);
+#else
+  w.depth += metres * wave_attenuation(crystal_of(r), r, w.wave, w.k);
+#endif
+}
+#endif
+
 // So many metres inside a refractor.
 void absorb_inside(inout PathState w, float metres) {
   int r = medium_of(w.inside);
-#if defined(KEEPS_TINTS) && defined(PLEOCHROIC)
-  vec3 amount = metres * axis_shares(crystal_of(r), w.wave, w.k);
-  for (int axis = 0; axis < 3; axis++) pass_by(w, r + (axis + 1) * REFRACTORS, amount[axis]);
-#elif defined(KEEPS_TINTS)
+#ifdef PLEOCHROIC
+  if (in_crystal(w.inside)) {
+    absorb_wave(w, r, metres);
+    return;
+  }
+#endif
+#if defined(KEEPS_TINTS)
   pass_by(w, r, metres);
-#elif defined(PLEOCHROIC)
-  w.depth += metres * wave_attenuation(crystal_of(r), r, w.wave, w.k);
 #elif defined(KEEPS_PARTS)
   w.depth += metres * attenuation_of(r);
 #else

@@ -111,6 +111,14 @@ TEST(both_waves_of_a_crystal) {
   check(CRYSTAL("tourmaline-green, axis: [1, 0.2, 0]"), 8, 1e-3);
 }
 
+#define BALL_ON                                                                                    \
+  "- {name: ball, shape: sphere, radius: 0.03, centre: [0, 0, 0.3], material: n-bk7}\n"
+
+/* Light goes through the glass, too, and is absorbed there. */
+TEST(glass_above_a_pleochroic_crystal) {
+  check(CRYSTAL("tourmaline-green, axis: [1, 0.2, 0]") BALL_ON, 8, 1e-3);
+}
+
 /* Light comes to the wall from the pane's mirror alone. */
 TEST(the_outside_alone) {
   check("materials: glass.yaml\ncamera: {eye: [-1, -1, 0.5], target: [0, 0, 0.05]}\n"

@@ -1,6 +1,6 @@
 // Paths through crystals from interface to interface: what walk.glsl does at their faces.
 
-bool in_crystal(uint inside) { return inside != 0u && is_double(crystal_of(medium_of(inside))); }
+bool in_crystal(uint inside) { return inside != 0u && is_crystal(crystal_of(medium_of(inside))); }
 
 // Both branches of w, which comes to a face of normal n on its side: the direction of what passes, and the share that
 // does not. Light that enters a crystal becomes the path's wave, of two that are followed, and counts as of its field.

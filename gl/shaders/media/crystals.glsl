@@ -20,7 +20,8 @@ Crystal make_crystal(vec3 z, vec3 x, vec4 row) {
                  vec3(a, a * row.w * row.w + c * row.z * row.z, c));
 }
 
-bool is_double(Crystal c) { return c.difference != 0.0; }
+// Glass has no axes.
+bool is_crystal(Crystal c) { return c.z != vec3(0); }
 
 // 1 for vectors of that wave: 0 or 1, of two indices the ordinary and the extraordinary one. slope: the way in which it
 // grows, along the ray.
@@ -65,7 +66,7 @@ vec3 displacement(Crystal c, int wave, vec3 k) {
 vec2 field_parts(Crystal c, int wave, vec3 k, vec3 n) {
   vec3 across = cross(k, n), d = displacement(c, wave, k);
   across = dot(across, across) > 1e-10 ? normalize(across) : across_of(n);
-  return is_double(c) ? vec2(dot(d, across), dot(d, cross(normalize(k), across))) : vec2(sqrt(0.5));
+  return is_crystal(c) ? vec2(dot(d, across), dot(d, cross(normalize(k), across))) : vec2(sqrt(0.5));
 }
 
 // What a face reflects of the field across the plane of incidence, of that in it, and of both by their phases.
@@ -96,7 +97,7 @@ void turn_wave(Crystal c, vec3 reflects, vec3 n, float choice, inout int wave, i
   vec2 to = field_parts(c, 0, k_0, n);
   float all = dot(reflects.xy, from * from);
   float share = dot(reflects.xy * from * from, to * to) + 2.0 * reflects.z * from.x * from.y * to.x * to.y;
-  bool goes_first = first && (!second || (is_double(c) ? choice * all < share : wave == 0));
+  bool goes_first = first && (!second || (is_crystal(c) ? choice * all < share : wave == 0));
   vec3 back = reflect(k, n);
   wave = goes_first ? 0 : 1;
   k = goes_first ? k_0 : second ? k_1 : back;
