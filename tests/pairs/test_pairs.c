@@ -29,7 +29,7 @@ static const struct {
 } noted[] = {
     {{{0, 0, 1, 1}}, "layers show few of them", true},
     {{{1, 0, 1, 1}}, "layers show few of them", false},
-    {{{1, 0, 1, 1}}, "ruby: double refraction by 0.0080", true},
+    {{{1, 0, 1, 1}}, "ruby: double refraction by 0.0081", true},
 };
 
 static void name_of(const cover_row *row, char *out, size_t size) {

@@ -43,10 +43,10 @@ TEST(lists_are_filtered_sorted_and_cut_into_columns) {
   answers("$abbe materials list --name 'N-*' --sort n_d --reverse --columns name", 0,
           "name\nn-sf11\nn-baf10\nn-bak4\nn-bk7\n");
   answers("$abbe materials list --source peter1923 --columns name,p_gF,dp_gF", 0,
-          "diamond  0.5629  +0.0121");
+          "diamond              0.5629  +0.0121");
   answers("$abbe materials list --name nothing", 0, "none of");
   HELD(cJSON, json) = run_json("$abbe materials list --name diamond --json", 0);
-  assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "materials")), 1);
+  assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "materials")), 2);
   assert_near(json_number(first(json, "materials"), "p_gF"), 0.5629, 5e-5);
 }
 
