@@ -209,7 +209,9 @@ static abbe_result check_inside(const abbe_scene *scene, abbe_error *error) {
                           path_of(scene), around->name, around->line, sizes);
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *o = &scene->object[i];
-    const bool absorbs = refracts(o) && o->material->attenuation != NULL && o->medium == NULL;
+    const bool absorbs =
+        refracts(o) && o->medium == NULL &&
+        (o->material->attenuation != NULL || abbe_material_is_fluorescent(o->material));
     const bool clear = !refracts(o) || (!absorbs && !abbe_material_is_crystal(o->material));
     if (clear || !abbe_object_contains(o, scene->camera.eye)) continue;
     return abbe_error_set(error, ABBE_UNSUPPORTED,

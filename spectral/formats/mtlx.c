@@ -369,6 +369,9 @@ abbe_result abbe_mtlx_write(const abbe_material_table *table, FILE *to, abbe_rep
       abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
                       "it is written with its %s index and its first absorption alone",
                       abbe_material_is_biaxial(m) ? "middle" : "ordinary");
+    if (abbe_material_is_fluorescent(m))
+      abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
+                      "it is written without its fluorescence and without what excites it");
     abbe_report_add(
         report, ABBE_NOTE_LOST, m->line, m->name,
         "n is Cauchy's two terms through n_d %.6g and V_d %.4g; from 380 to 780 nm it is "

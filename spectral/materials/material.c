@@ -218,7 +218,10 @@ abbe_result abbe_material_check_fluorescence(const abbe_material *m, abbe_error 
                           "%s: its fluorescence wants an 'emission', photons by nm at two "
                           "wavelengths or more, some above 0",
                           m->name);
-  if (f->excitation == NULL && m->attenuation == NULL)
+  const bool dark =
+      f->excitation != NULL &&
+      !(abbe_spectrum_integral(f->excitation, first_of(f->excitation), last_of(f->excitation)) > 0);
+  if (dark || (f->excitation == NULL && m->attenuation == NULL))
     return abbe_error_set(
         error, ABBE_INVALID_ARGUMENT,
         "%s: it absorbs nothing that could make it glow: give its fluorescence an "

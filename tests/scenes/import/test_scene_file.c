@@ -348,6 +348,7 @@ TEST(bad_scenes_are_explained) {
       {"light_on_a_box", ABBE_UNSUPPORTED, "on the surface of the refractor 'ball'"},
       {"camera_on_a_ball", ABBE_UNSUPPORTED, "eye is on the surface of the refractor 'ball'"},
       {"camera_inside", ABBE_UNSUPPORTED, "camera's eye is inside"},
+      {"camera_in_a_glow", ABBE_UNSUPPORTED, "'diamond-fluorescent', which absorbs light"},
       {"nothing_in_view", ABBE_UNSUPPORTED, "in the camera's view"},
   };
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {

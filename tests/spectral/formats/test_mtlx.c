@@ -82,20 +82,21 @@ TEST(a_colour_at_a_depth_is_an_attenuation) {
 }
 
 TEST(what_is_written_is_read_again) {
-  static const char *const names[] = {"diamond", "n-bk7", "emerald"};
-  abbe_material some[3];
+  static const char *const names[] = {"diamond", "n-bk7", "emerald", "diamond-fluorescent"};
+  abbe_material some[4];
   char *text = NULL;
   size_t size = 0;
-  for (int i = 0; i < 3; i++) some[i] = *find_material(&shipped, names[i]);
-  const abbe_material_table written = {.count = 3, .material = some};
+  for (int i = 0; i < 4; i++) some[i] = *find_material(&shipped, names[i]);
+  const abbe_material_table written = {.count = 4, .material = some};
   FILE *to = open_memstream(&text, &size);
   OK(abbe_mtlx_write(&written, to, &report, &error));
   fclose(to);
+  assert_non_null(strstr(report.note[report.count - 2].text, "without its fluorescence"));
   OK(import(text, &error));
   free(text);
-  assert_int_equal(table.count, 3);
+  assert_int_equal(table.count, 4);
   assert_string_equal(table.material[1].name, "n_bk7");
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 4; i++) {
     const abbe_dispersion_numbers was = abbe_dispersion_describe(&some[i].dispersion),
                                   is = abbe_dispersion_describe(&table.material[i].dispersion);
     assert_near(is.n_d, was.n_d, 1e-6);

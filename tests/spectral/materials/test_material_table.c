@@ -317,6 +317,9 @@ TEST(bad_absorption_and_fits_are_refused) {
       {"  fluorescence: {yield: 1, emission: [[500, -1], [600, 0]]}\n", "range from 0"},
       {"  fluorescence: {yield: 1, emission: [[500, 0], [600, 0]]}\n", "some above 0"},
       {"  fluorescence: {yield: 1, emission: [[500, 1], [600, 0]]}\n", "it absorbs nothing"},
+      {"  fluorescence: {yield: 1, emission: [[500, 1], [600, 0]], excitation_per_m: [[400, 0], "
+       "[490, 0]]}\n",
+       "it absorbs nothing"},
       {"  fluorescence: {yield: 1, emission: [[500, 1], [600, 0]], excitation_per_m: [[400, 1], "
        "[510, 1]]}\n",
        "emits from 500 nm and is excited up to 510 nm"},
