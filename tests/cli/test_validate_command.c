@@ -50,11 +50,12 @@ TEST(a_group_as_json) {
 }
 
 /* Whole runs, small: their tolerances widen with their noise, and would fail where it tells
- * nothing.
+ * nothing. Some random stones stand in a furnace each time, in test_turned_paths.
  */
 TEST(runs_meet_a_furnace_and_converge) {
-  run_says("\"$abbe\" validate --only furnace --samples 65536 --threads 1",
-           "10 of 10 known answers are within tolerance");
+  if (all_cases())
+    run_says("\"$abbe\" validate --only furnace --samples 65536 --threads 1",
+             "10 of 10 known answers are within tolerance");
   run_says("\"$abbe\" validate --only convergence --samples 65536 --threads 1",
            "slope of the error over the photons");
 }
