@@ -72,7 +72,8 @@ void abbe_spectral_options_free(abbe_spectral_options *o) {
 void abbe_spectral_options_note_unread(const abbe_image *image, const char *layer,
                                        const char *name) {
   static const char *const what[ABBE_SPECTRAL_UNREAD_COUNT] = {
-      "of polarised light", "of re-radiation, which is not applied",
+      "of polarised light",
+      "of re-radiation between wavelengths that are no bands of a reflectance",
       "named as bands are not: S0.550nm is right"};
   abbe_spectral_unread unread;
   abbe_spectral_channels_find_unread(image, layer, &unread);

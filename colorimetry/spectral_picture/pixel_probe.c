@@ -83,11 +83,11 @@ static abbe_result take_colour(const abbe_image *image, const char *layer, const
 static abbe_result take_spectrum(const char *name, const abbe_spectral_view *view,
                                  abbe_pixel_probe *p, abbe_error *error) {
   const abbe_spectral_channels *s = &p->spectrum;
-  double(*weight)[3] = calloc(s->count, sizeof *weight), white[3];
+  double(*weight)[3] = calloc(s->terms, sizeof *weight), white[3];
   if (weight == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its bands", name);
   abbe_result result = abbe_spectral_colour_weights(s, view, name, weight, error);
-  for (size_t i = 0; i < s->count && result == ABBE_OK; i++)
+  for (size_t i = 0; i < s->terms && result == ABBE_OK; i++)
     for (int k = 0; k < 3; k++) {
       p->spectral_xyz[k] += weight[i][k] * p->mean[s->channel[i]];
       p->spectral_error[k] += weight[i][k] * p->error[s->channel[i]];

@@ -8,12 +8,12 @@
 
 enum { NAME = 40 };
 
-/* What each of an emissive picture's bands is multiplied by for another illuminant, of lights of
- * the same watts over the bands' range: factor[channels->count], 0 where `from` is dark. 1
+/* What each of an emissive picture's channels is multiplied by for another illuminant, of lights of
+ * the same watts over the bands' range: factor[channels->terms], 0 where `from` is dark. 1
  * throughout without view->to and for reflectances. */
 static void find_factors(const abbe_spectral_channels *c, const abbe_spectral_view *view,
                          double *factor) {
-  for (size_t i = 0; i < c->count; i++) factor[i] = 1;
+  for (size_t i = 0; i < c->terms; i++) factor[i] = 1;
   if (c->kind != ABBE_SPECTRAL_EMISSIVE || view->from == NULL || view->to == NULL) return;
   const double low = c->edge_nm[0], high = c->edge_nm[c->count];
   const double all_from = abbe_observer_integral_power(view->from, low, high),
@@ -61,9 +61,9 @@ static const char *unit_of(const abbe_spectral_channels *c, const abbe_relight_d
 static abbe_result make_image(const abbe_image *image, const abbe_spectral_channels *c,
                               const abbe_relight_desc *d, abbe_image *out, abbe_error *error) {
   static const char *const rgb[3] = {"R", "G", "B"}, *const xyz[3] = {"X", "Y", "Z"};
-  const size_t bands = d->bands ? c->count : 0;
+  const size_t bands = d->bands ? c->terms : 0;
   const bool emissive = c->kind == ABBE_SPECTRAL_EMISSIVE;
-  char(*text)[NAME] = calloc(bands + 1, sizeof *text);
+  char(*text)[2 * NAME] = calloc(bands + 1, sizeof *text);
   const char **name = calloc(bands + 3, sizeof *name);
   abbe_result result = ABBE_OK;
   if (text == NULL || name == NULL)
@@ -71,9 +71,11 @@ static abbe_result make_image(const abbe_image *image, const abbe_spectral_chann
   for (size_t k = 0; k < 3 && result == ABBE_OK; k++)
     name[k] = d->space == ABBE_RGB_SPACE_XYZ ? xyz[k] : rgb[k];
   for (size_t i = 0; i < bands && result == ABBE_OK; i++) {
-    char emitted[NAME];
-    abbe_image_band_name(c->lambda_nm[i], emitted, sizeof emitted);
-    snprintf(text[i], NAME, "%s%s", emissive ? "S0" : "T", emitted + 2);
+    const bool one = i < c->count;
+    char from[NAME], to[NAME] = "S0";
+    abbe_image_band_name(c->lambda_nm[one ? i : c->between[i - c->count][0]], from, sizeof from);
+    if (!one) abbe_image_band_name(c->lambda_nm[c->between[i - c->count][1]], to, sizeof to);
+    snprintf(text[i], sizeof *text, "%s%s%s", emissive ? "S0" : "T", from + 2, to + 2);
     name[3 + i] = text[i];
   }
   if (result == ABBE_OK)
@@ -87,7 +89,7 @@ static abbe_result make_image(const abbe_image *image, const abbe_spectral_chann
 static double brightest(const abbe_image *image, const abbe_spectral_channels *c) {
   double most = 65504; /* the greatest half */
   for (size_t p = 0; p < image->width * image->height; p++)
-    for (size_t i = 0; i < c->count; i++) {
+    for (size_t i = 0; i < c->terms; i++) {
       const double value = fabs((double)image->data[p * image->channels + c->channel[i]]);
       if (isfinite(value)) most = fmax(most, value);
     }
@@ -102,7 +104,7 @@ static void fill(const abbe_image *image, const abbe_spectral_channels *c,
     const float *from = image->data + p * image->channels;
     float *to = out->data + p * out->channels;
     double sum[3] = {0};
-    for (size_t i = 0; i < c->count; i++)
+    for (size_t i = 0; i < c->terms; i++)
       for (int k = 0; k < 3; k++) {
         const double value = (double)from[c->channel[i]];
         sum[k] += weight[i][k] * (isinf(value) ? copysign(most, value) : value);
@@ -124,11 +126,10 @@ static abbe_result describe(const abbe_image *image, const abbe_spectral_channel
   abbe_result result =
       abbe_image_set_attribute(out, "abbe:space", abbe_rgb_space_name(d->space), error);
   if (result == ABBE_OK)
-    result = abbe_image_set_attribute(out, "abbe:observer", abbe_observer_text(d->view.observer),
-                                      error);
-  if (result == ABBE_OK && light != NULL)
     result =
-        abbe_image_set_attribute(out, "abbe:illuminant", abbe_illuminant_name(light), error);
+        abbe_image_set_attribute(out, "abbe:observer", abbe_observer_text(d->view.observer), error);
+  if (result == ABBE_OK && light != NULL)
+    result = abbe_image_set_attribute(out, "abbe:illuminant", abbe_illuminant_name(light), error);
   if (result == ABBE_OK) result = abbe_image_set_attribute(out, "abbe:unit", unit_of(c, d), error);
   if (result == ABBE_OK && d->bands)
     result = abbe_image_set_attribute(out, "spectralLayoutVersion", "1.0", error);
@@ -166,16 +167,15 @@ abbe_result abbe_relight_make(const abbe_image *image, const char *name,
   abbe_spectral_channels c = {0};
   abbe_result result = abbe_spectral_channels_find(image, desc->layer, name, &c, error);
   if (result == ABBE_OK && desc->odd != NULL)
-    abbe_image_count_odd(image, c.channel, c.count, desc->odd);
+    abbe_image_count_odd(image, c.channel, c.terms, desc->odd);
   if (result == ABBE_OK && c.count == 0)
     result = abbe_error_set(error, ABBE_NOT_FOUND,
                             "%s: it has no bands%s%s%s such as S0.550,000000nm; abbe render "
                             "--bands N and abbe trace --bands N make pictures that have",
                             name, desc->layer != NULL ? " in the layer '" : "",
-                            desc->layer != NULL ? desc->layer : "",
-                            desc->layer != NULL ? "'" : "");
+                            desc->layer != NULL ? desc->layer : "", desc->layer != NULL ? "'" : "");
   if (result == ABBE_OK) {
-    double(*weight)[3] = calloc(c.count, sizeof *weight), *factor = calloc(c.count, sizeof *factor);
+    double(*weight)[3] = calloc(c.terms, sizeof *weight), *factor = calloc(c.terms, sizeof *factor);
     result = weight != NULL && factor != NULL
                  ? relight(image, name, &c, desc, weight, factor, out, error)
                  : abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its bands", name);

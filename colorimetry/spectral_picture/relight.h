@@ -16,7 +16,8 @@ typedef struct abbe_relight_desc {
   const char *layer; /* the bands' own, as spectral_channels.h; NULL: none */
   abbe_spectral_view view;
   abbe_rgb_space space;
-  bool bands; /* keep them too: under view.to where there is one */
+  bool bands; /* keep them too, and what is re-radiated between them: emissive ones under view.to
+                 where there is one */
   /* where the light is not known: light of 1 W/(m2 sr nm) at all wavelengths has Y = 1, instead of
    * lm */
   bool relative;

@@ -168,6 +168,24 @@ static size_t collect(const abbe_image *image, const char *layer, abbe_spectral_
   return count;
 }
 
+/* "T.400nm.500nm": from and to, nm. */
+static bool parse_reradiation(const char *name, double nm[2]) {
+  const char *second = strncmp(name, "T.", 2) == 0 ? strchr(name + 2, '.') : NULL;
+  char first[64];
+  if (second == NULL || (size_t)(second - name - 2) >= sizeof first) return false;
+  snprintf(first, sizeof first, "%.*s", (int)(second - name - 2), name + 2);
+  nm[0] = parse_place(first);
+  nm[1] = parse_place(second + 1);
+  return nm[0] > 0 && nm[1] > 0 && isfinite(nm[0]) && isfinite(nm[1]);
+}
+
+/* The band of that wavelength; count: none is. */
+static size_t band_at(const abbe_spectral_channels *c, double nm) {
+  size_t i = 0;
+  while (i < c->count && fabs(c->lambda_nm[i] - nm) > 1e-6 * nm) i++;
+  return i;
+}
+
 static abbe_result check(const abbe_image *image, const sample *list, size_t count,
                          const char *name, abbe_error *error) {
   for (size_t i = 1; i < count; i++)
@@ -186,13 +204,14 @@ static size_t find_error(const abbe_image *image, size_t channel) {
 
 static abbe_result fill(const abbe_image *image, const sample *list, size_t count, const char *name,
                         abbe_spectral_channels *out, abbe_error *error) {
-  out->count = count;
+  out->count = out->terms = count;
   out->lambda_nm = calloc(count, sizeof *out->lambda_nm);
   out->edge_nm = calloc(count + 1, sizeof *out->edge_nm);
-  out->channel = calloc(count, sizeof *out->channel);
-  out->error = calloc(count, sizeof *out->error);
+  out->channel = calloc(image->channels, sizeof *out->channel);
+  out->error = calloc(image->channels, sizeof *out->error);
+  out->between = calloc(image->channels, sizeof *out->between);
   if (out->lambda_nm == NULL || out->edge_nm == NULL || out->channel == NULL ||
-      out->error == NULL) {
+      out->error == NULL || out->between == NULL) {
     abbe_spectral_channels_free(out);
     return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its bands", name);
   }
@@ -208,6 +227,27 @@ static abbe_result fill(const abbe_image *image, const sample *list, size_t coun
   }
   out->edge_nm[0] = fmax(0, 2 * out->lambda_nm[0] - out->edge_nm[1]);
   out->edge_nm[count] = 2 * out->lambda_nm[count - 1] - out->edge_nm[count - 1];
+  return ABBE_OK;
+}
+
+static abbe_result find_reradiation(const abbe_image *image, const char *layer, const char *name,
+                                    abbe_spectral_channels *c, abbe_error *error) {
+  for (size_t i = 0; i < image->channels; i++) {
+    const char *own = within(image->channel[i], layer);
+    double nm[2];
+    if (own == NULL || !parse_reradiation(own, nm)) continue;
+    const size_t from = band_at(c, nm[0]), to = band_at(c, nm[1]);
+    if (from == c->count || to == c->count || from == to) continue;
+    for (size_t k = c->count; k < c->terms; k++)
+      if (c->between[k - c->count][0] == from && c->between[k - c->count][1] == to)
+        return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                              "%s: the channels '%s' and '%s' are of one pair of wavelengths", name,
+                              image->channel[c->channel[k]], image->channel[i]);
+    c->between[c->terms - c->count][0] = from;
+    c->between[c->terms - c->count][1] = to;
+    c->channel[c->terms] = i;
+    c->error[c->terms++] = find_error(image, i);
+  }
   return ABBE_OK;
 }
 
@@ -227,6 +267,7 @@ abbe_result abbe_spectral_channels_find(const abbe_image *image, const char *lay
   if (result == ABBE_OK) result = fill(image, list, count, name, out, error);
   if (result == ABBE_OK) out->kind = kind;
   const bool emissive = kind == ABBE_SPECTRAL_EMISSIVE;
+  if (result == ABBE_OK && !emissive) result = find_reradiation(image, layer, name, out, error);
   const char *unit = emissive ? abbe_image_attribute_text(image, "emissiveUnits") : NULL;
   if (result == ABBE_OK) result = abbe_spectral_unit_read(unit, name, &out->unit, error);
   if (result != ABBE_OK) abbe_spectral_channels_free(out);
@@ -244,11 +285,8 @@ static bool is_named_otherwise(const char *name) {
 }
 
 static bool is_reradiation(const char *name) {
-  const char *second = strncmp(name, "T.", 2) == 0 ? strchr(name + 2, '.') : NULL;
-  char first[64];
-  if (second == NULL || (size_t)(second - name - 2) >= sizeof first) return false;
-  snprintf(first, sizeof first, "%.*s", (int)(second - name - 2), name + 2);
-  return parse_place(first) > 0 && parse_place(second + 1) > 0;
+  double nm[2];
+  return parse_reradiation(name, nm);
 }
 
 static bool is_polarised(const char *name) {
@@ -261,14 +299,19 @@ void abbe_spectral_channels_find_unread(const abbe_image *image, const char *lay
   static bool (*const is[ABBE_SPECTRAL_UNREAD_COUNT])(const char *name) = {
       is_polarised, is_reradiation, is_named_otherwise};
   *out = (abbe_spectral_unread){0};
+  abbe_spectral_channels read = {0};
+  (void)abbe_spectral_channels_find(image, layer, "", &read, NULL);
   for (size_t c = 0; c < image->channels; c++) {
     const char *name = within(image->channel[c], layer);
+    for (size_t i = read.count; i < read.terms; i++)
+      if (read.channel[i] == c) name = NULL;
     for (int k = 0; name != NULL && k < ABBE_SPECTRAL_UNREAD_COUNT; k++) {
       if (!is[k](name)) continue;
       if (out->count[k]++ == 0) out->first[k] = image->channel[c];
       break;
     }
   }
+  abbe_spectral_channels_free(&read);
 }
 
 void abbe_spectral_channels_free(abbe_spectral_channels *c) {
@@ -277,6 +320,7 @@ void abbe_spectral_channels_free(abbe_spectral_channels *c) {
   free(c->edge_nm);
   free(c->channel);
   free(c->error);
+  free(c->between);
   *c = (abbe_spectral_channels){0};
 }
 
@@ -349,6 +393,13 @@ abbe_result abbe_spectral_colour_weights(const abbe_spectral_channels *c,
     }
     if (!reflective) factor *= c->unit.factor;
     for (int k = 0; k < 3; k++) weight[i][k] *= factor;
+  }
+  for (size_t i = c->count; i < c->terms; i++) {
+    const size_t *at = c->between[i - c->count];
+    const double *from = c->edge_nm + at[0], *to = c->edge_nm + at[1];
+    const double mean = abbe_observer_integral_power(light, from[0], from[1]) / (from[1] - from[0]);
+    abbe_observer_integral_by(view->observer, &even, to[0], to[1], weight[i]);
+    for (int k = 0; k < 3; k++) weight[i][k] *= mean / 100 / white[1];
   }
   return ABBE_OK;
 }

@@ -1,10 +1,12 @@
 /* spectral_channels.h: which of a picture's channels are samples of a spectrum, by their names.
  *
  * The layout of [Fichet2021]: "S0.550,000000nm" is emitted (or arriving) light, "T.550,000000nm" a
- * reflectance; the comma is the decimal point, the unit m or Hz with or without a prefix. What
- * stands before, up to a point, is a layer. Each sample stands for a band; bands meet midway
- * between neighbouring samples and reach as far beyond the first and the last; a lone sample has no
- * known band, and so no width. It reads no files. */
+ * reflectance, "T.400,000000nm.550,000000nm" what comes back at 550 nm of light at 400: the
+ * reflectances are the diagonal of a matrix [Donaldson1954], and these its other places. The comma
+ * is the decimal point, the unit m or Hz with or without a prefix. What stands before, up to a
+ * point, is a layer. Each sample stands for a band; bands meet midway between neighbouring samples
+ * and reach as far beyond the first and the last; a lone sample has no known band, and so no width.
+ * It reads no files. */
 #ifndef ABBE_COLORIMETRY_SPECTRAL_PICTURE_SPECTRAL_CHANNELS_H
 #define ABBE_COLORIMETRY_SPECTRAL_PICTURE_SPECTRAL_CHANNELS_H
 
@@ -52,31 +54,35 @@ typedef enum abbe_spectral_kind {
 
 /* What a channel's name without its layer means, and the wavelength in *lambda_nm (vacuum's, where
  * the name has a frequency). Of polarised light only S0, all of it, counts; re-radiation
- * ("T.550nm.600nm") is none. */
+ * ("T.550nm.600nm") is no band. */
 abbe_spectral_kind abbe_spectral_channel_parse(const char *name, double *lambda_nm);
 
 /* Zeroed: none. */
 typedef struct abbe_spectral_channels {
   abbe_spectral_kind kind;
   size_t count;
-  double *lambda_nm; /* [count] ascending */
-  double *edge_nm;   /* [count + 1] of the bands */
-  size_t *channel;   /* [count] in the image */
-  size_t *error;     /* [count] the channel of its standard error, "stderr." before the name, or
-                        (size_t)-1 */
+  double *lambda_nm;    /* [count] ascending */
+  double *edge_nm;      /* [count + 1] of the bands */
+  size_t terms;         /* bands, and behind them channels of re-radiation between two of them */
+  size_t *channel;      /* [terms] in the image */
+  size_t *error;        /* [terms] the channel of its standard error, "stderr." before the name, or
+                           (size_t)-1 */
+  size_t (*between)[2]; /* [terms - count] the band of the light that comes, and of what leaves */
   abbe_spectral_unit
       unit; /* unit of emissive samples, by the attribute emissiveUnits; else of factor 1 */
 } abbe_spectral_channels;
 
-/* The emissive samples of a picture, else the reflective ones, else none (count 0, ABBE_OK).
+/* The emissive samples of a picture, else the reflective ones and what is re-radiated between them,
+ * else none (count 0, ABBE_OK).
  * `layer` names the layer that they are in, NULL: in none. `name` is what errors call the picture.
- * ABBE_INVALID_ARGUMENT for two channels of one wavelength, ABBE_UNSUPPORTED for a unit that is
- * none of light. */
+ * ABBE_INVALID_ARGUMENT for two channels of one wavelength or pair of them, ABBE_UNSUPPORTED for a
+ * unit that is none of light. */
 abbe_result abbe_spectral_channels_find(const abbe_image *image, const char *layer,
                                         const char *name, abbe_spectral_channels *out,
                                         abbe_error *error);
 /* Channels that are of a spectrum and are not read: S1 to S3 of polarised light, re-radiation
- * ("T.400nm.500nm"), and what bands are called elsewhere ("w420nm"). */
+ * between wavelengths that are no bands of a reflectance, and what bands are called elsewhere
+ * ("w420nm"). */
 typedef enum abbe_spectral_unread_kind {
   ABBE_SPECTRAL_UNREAD_POLARISED,
   ABBE_SPECTRAL_UNREAD_RERADIATION,
@@ -109,14 +115,15 @@ typedef struct abbe_spectral_view {
   const abbe_illuminant *to;   /* to look at it under; NULL: as it is, a reflectance under D65 */
 } abbe_spectral_view;
 
-/* What a unit of each band adds to X, Y and Z, whatever unit the picture states:
- * weight[channels->count].
+/* What a unit of each channel adds to X, Y and Z, whatever unit the picture states:
+ * weight[channels->terms].
  *
  * Emissive, `from` not known: each band is even within itself, and XYZ is in lm (of a radiance in
  * W/(m2 sr nm): cd/m2). `from` known: within a band light has its shape, and XYZ is in the unit of
  * Abbe's pictures, where a light of one watt is white with Y = 1; under `to`, every light of the
  * scene has that illuminant instead, with as many of these units. Reflective: relative to a perfect
- * white under `to`, whose Y is 1.
+ * white under `to`, whose Y is 1. Re-radiation: light of the one band, by its mean a nm under `to`,
+ * comes back even within the other.
  *
  * ABBE_INVALID_ARGUMENT where there are less than two bands, where they hold no light that the eye
  * sees, and where `to` is given for a light that is not known. */

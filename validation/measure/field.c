@@ -282,6 +282,7 @@ static abbe_result take_bands(const abbe_image *image, const char *name, abbe_fi
   abbe_spectral_unread unread;
   abbe_spectral_channels_find_unread(image, NULL, &unread);
   for (int k = 0; k < ABBE_SPECTRAL_UNREAD_COUNT; k++) f->unread += unread.count[k];
+  f->unread += list.terms - list.count; /* of re-radiation */
   f->lambda_nm = list.lambda_nm;
   list.lambda_nm = NULL;
   abbe_spectral_channels_free(&list);

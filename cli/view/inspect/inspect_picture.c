@@ -277,7 +277,7 @@ abbe_result abbe_inspect_mix_make(const abbe_inspect_picture *p, const abbe_insp
                                   abbe_error *error) {
   abbe_inspect_mix mix = {.kind = entry->kind, .count = 1};
   if (entry->kind == ABBE_INSPECT_COLOUR) mix.count = 3;
-  if (entry->kind == ABBE_INSPECT_SPECTRUM) mix.count = p->bands.count;
+  if (entry->kind == ABBE_INSPECT_SPECTRUM) mix.count = p->bands.terms;
   mix.channel = calloc(mix.count + 4, sizeof *mix.channel);
   mix.weight = calloc(mix.count + 4, sizeof *mix.weight);
   if (mix.channel == NULL || mix.weight == NULL) {

@@ -160,6 +160,25 @@ TEST(bands_are_kept) {
   for (int k = 0; k < 3; k++) assert_near((double)again.data[k], (double)out.data[k], 1e-6);
 }
 
+TEST(re_radiation_is_seen_and_kept) {
+  static const char *const names[] = {"T.400nm", "T.500nm", "T.600nm", "T.400nm.600nm"};
+  const abbe_illuminant a = {.kind = ABBE_ILLUMINANT_A}, d65 = {0};
+  double y[2];
+  MADE(abbe_image, image, abbe_image_make(1, 1, 4, names, &image, &error));
+  image.data[3] = 0.5f;
+  for (int i = 0; i < 2; i++) {
+    const abbe_relight_desc desc = {
+        .view.to = i == 0 ? &d65 : &a, .space = ABBE_RGB_SPACE_XYZ, .bands = true};
+    MADE(abbe_image, out, abbe_relight_make(&image, "it", &desc, &out, &error));
+    assert_int_equal(out.channels, 3 + 4);
+    assert_string_equal(out.channel[6], "T.400,000000nm.600,000000nm");
+    assert_true(out.data[6] == 0.5f);
+    y[i] = (double)out.data[1];
+  }
+  /* A has little light around 400 nm */
+  assert_true(y[0] > 3 * y[1] && y[1] > 0);
+}
+
 TEST(what_is_refused_and_what_is_needed) {
   static const char *const rgb[] = {"R", "G", "B", "left.S0.500nm", "left.S0.600nm"};
   const abbe_relight_desc none = {0}, left = {.layer = "left"};

@@ -1,6 +1,7 @@
 #include "tests/check.h"
 
 #include "colorimetry/chromaticity.h"
+#include "colorimetry/observer_integral.h"
 #include "colorimetry/spectral_picture/spectral_channels.h"
 #include "colorimetry/weights.h"
 
@@ -186,6 +187,46 @@ TEST(a_lamp_in_bands) {
   }
   abbe_spectral_colour_white(&c, &under_a, white);
   for (int k = 0; k < 3; k++) assert_near(sum[k], white[k], 1e-12);
+}
+
+/* Half of the light around 405 nm comes back around 605: under even light that is a reflectance of
+ * a half there, under D65 less by both bands' light, and of a line elsewhere nothing. */
+TEST(re_radiation) {
+  enum { IN = 2, OUT = 22 };
+  const abbe_illuminant e = {.kind = ABBE_ILLUMINANT_E}, d65 = {0};
+  char name[BANDS + 2][40];
+  const char *names[BANDS + 2];
+  for (int i = 0; i < BANDS + 2; i++) {
+    snprintf(name[i], sizeof name[i], "T.%dnm%s", i < BANDS ? 385 + 10 * i : 405,
+             i < BANDS    ? ""
+             : i == BANDS ? ".605nm"
+                          : ".606nm");
+    names[i] = name[i];
+  }
+  MADE(abbe_image, image, abbe_image_make(1, 1, BANDS + 2, names, &image, &error));
+  MADE(abbe_spectral_channels, c, abbe_spectral_channels_find(&image, NULL, "it", &c, &error));
+  assert_true(c.count == BANDS && c.terms == BANDS + 1 && c.channel[BANDS] == BANDS);
+  assert_true(c.between[0][0] == IN && c.between[0][1] == OUT);
+  abbe_spectral_unread unread; /* to a wavelength that is no band */
+  abbe_spectral_channels_find_unread(&image, NULL, &unread);
+  assert_int_equal(unread.count[ABBE_SPECTRAL_UNREAD_RERADIATION], 1);
+  assert_string_equal(unread.first[ABBE_SPECTRAL_UNREAD_RERADIATION], "T.405nm.606nm");
+  double weight[BANDS + 1][3], white[3];
+  OK(abbe_spectral_colour_weights(&c, &(abbe_spectral_view){.to = &e}, "it", weight, &error));
+  for (int k = 0; k < 3; k++) assert_near(weight[BANDS][k], weight[OUT][k], 1e-12);
+  const double even = weight[OUT][1];
+  abbe_observer_integral(&e, 380, 780, white);
+  const double even_white = white[1];
+  OK(abbe_spectral_colour_weights(&c, &(abbe_spectral_view){.to = &d65}, "it", weight, &error));
+  abbe_observer_integral(&d65, 380, 780, white);
+  const double mean = abbe_observer_integral_power(&d65, 400, 410) / 10;
+  assert_near(weight[BANDS][1], even * even_white / 100 * mean / white[1], 1e-12);
+  abbe_image_free(&image);
+  snprintf(name[BANDS + 1], sizeof *name, "T.0,405um.605nm");
+  OK(abbe_image_make(1, 1, BANDS + 2, names, &image, &error));
+  abbe_spectral_channels twice;
+  REFUSED(ABBE_INVALID_ARGUMENT, "are of one pair of wavelengths",
+          abbe_spectral_channels_find(&image, NULL, "it", &twice, &error));
 }
 
 /* A radiance of 1 W/(m2 sr nm) in the band around 555 nm alone is 683 lm/W there. */
