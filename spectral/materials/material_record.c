@@ -171,16 +171,19 @@ static abbe_result read_fluorescence(abbe_record_reading *r) {
                        excitation = abbe_yaml_get(r->yaml, where, "excitation_per_m");
   ABBE_TRY(abbe_yaml_get_number(r->yaml, where, "yield", 0, 1, &f->yield, r->error));
   ABBE_TRY(abbe_yaml_check_keys(r->yaml, where, "'fluorescence'", r->error));
-  if (emission.id != 0)
-    ABBE_TRY(abbe_record_read_points(r, emission, "emission", 0, 1e15, ABBE_INTERPOLATION_LINEAR,
-                                     &f->emission));
+  if (emission.id == 0)
+    return abbe_yaml_fail(r->yaml, where, r->error, "'fluorescence' wants an 'emission'");
+  if (abbe_yaml_get(r->yaml, where, "yield").id == 0)
+    return abbe_yaml_fail(r->yaml, where, r->error,
+                          "'fluorescence' wants a 'yield', photons emitted by photon that excites, "
+                          "0 to 1");
+  ABBE_TRY(abbe_record_read_points(r, emission, "emission", 0, 1e15, ABBE_INTERPOLATION_LINEAR,
+                                   &f->emission));
   if (excitation.id != 0)
     ABBE_TRY(abbe_record_read_points(r, excitation, "excitation_per_m", 0, 1e15,
                                      ABBE_INTERPOLATION_LINEAR, &f->excitation));
-  if (f->emission != NULL && abbe_material_check_fluorescence(r->material, &why) == ABBE_OK)
-    return ABBE_OK;
-  return abbe_yaml_fail(r->yaml, where, r->error, "%s",
-                        f->emission != NULL ? why.text : "'fluorescence' wants an 'emission'");
+  if (abbe_material_check_fluorescence(r->material, &why) == ABBE_OK) return ABBE_OK;
+  return abbe_yaml_fail(r->yaml, where, r->error, "%s", why.text);
 }
 
 /* ---- fits ---- */
