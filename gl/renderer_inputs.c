@@ -1,6 +1,7 @@
 #include "gl/renderer_inputs.h"
 
 #include "gl/methods/transports/transports.h"
+#include "gl/scene/gpu_scene.h"
 #include "gl/scene/spectra/camera_bands.h"
 #include "scenes/geometry/digest.h"
 
@@ -87,12 +88,12 @@ static uint64_t mix_shape(uint64_t h, const abbe_object *o) {
   return mix_coated(h, o->coatings);
 }
 
-/* Surfaces, of which kind, which share a material, and the models that the plan chose. */
+/* Surfaces, of which kind, which are of the same stuff, and the models that the plan chose. */
 static uint64_t of_geometry(const abbe_scene *scene, const abbe_plan *plan) {
   uint64_t h = 1;
   for (size_t i = 0; i < scene->object_count; i++) {
     size_t first = 0;
-    while (scene->object[first].material != scene->object[i].material) first++;
+    while (!abbe_gpu_scene_same_stuff(&scene->object[first], &scene->object[i])) first++;
     const abbe_object_kind kind = abbe_object_kind_of(&scene->object[i]);
     h = mix_shape(h, &scene->object[i]);
     MIX(h, first);

@@ -24,8 +24,7 @@ static bool along(const double a[3], const double b[3]) {
   return fabs(abbe_vector_dot(a, b)) > 1 - 1e-12;
 }
 
-/* Of one material, and a crystal's axes lie alike: else there is a face between them. */
-static bool is_same_stuff(const abbe_object *a, const abbe_object *b) {
+bool abbe_gpu_scene_same_stuff(const abbe_object *a, const abbe_object *b) {
   if (a->material != b->material || a->material == NULL || !abbe_material_is_crystal(a->material))
     return a->material == b->material;
   return along(a->axis, b->axis) &&
@@ -58,7 +57,8 @@ static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
     refractor[i].info[0] = (int)plan->model[i];
     for (size_t k = 0; k <= i; k++) { /* the first of the same */
       refractor[i].info[3] = (int)k;
-      if (is_same_stuff(&scene->local->object[plan->refractor_object[k]], object)) break;
+      if (abbe_gpu_scene_same_stuff(&scene->local->object[plan->refractor_object[k]], object))
+        break;
     }
     if (plan->mirror[i]) refractor[i].info[2] = -1;
     refractor[i].info[1] = (int)next;

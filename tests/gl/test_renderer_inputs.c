@@ -197,6 +197,23 @@ TEST(absorption_along_each_axis_is_of_the_spectra) {
   abbe_scene_free(&e.scene);
 }
 
+/* Where two crystals touch there is a face once their axes differ, however they are turned. */
+TEST(a_crystal_turned_against_another_is_of_the_shape) {
+  edited e = {.desc = {.width = 32, .height = 32, .photons = 32, .map_size = 64}};
+  abbe_renderer_inputs before, after;
+  e.scene = scene_of("camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR BALL(
+      "calcite") BRICK("calcite"));
+  inputs_of(&e, &before);
+  const double turned[3] = {0.6, 0, 0.8};
+  for (int i = 0; i < 2; i++) {
+    memcpy(e.scene.object[1 + i].axis, turned, sizeof turned);
+    inputs_of(&e, &after);
+    assert_int_equal(abbe_renderer_inputs_differ(&before, &after),
+                     i == 0 ? SHAPE | SPECTRA : SPECTRA | WAY);
+  }
+  abbe_scene_free(&e.scene);
+}
+
 /* Two wavelengths by request are even, and by themselves they are sodium's lines. */
 TEST(lines_of_lights_are_of_the_spectra) {
   edited e = {.desc = {.width = 32, .height = 32, .photons = 32, .map_size = 64}};
