@@ -19,7 +19,7 @@ static const char *const sides[] = {"the reference", "the test"};
 typedef struct request {
   double mask_share;
   size_t seed;
-  bool best_scale;
+  bool best_scale, structure;
   int caustic;
 } request;
 
@@ -30,6 +30,7 @@ static abbe_result read_request(const char *const *settings, size_t count, bool 
   const abbe_lib_setting known[] = {ABBE_LIB_CHOICE("mask", &q->caustic, masks),
                                     ABBE_LIB_NUMBER("mask_share", &q->mask_share, 1e-6, 1),
                                     ABBE_LIB_FLAG("best_scale", &q->best_scale),
+                                    ABBE_LIB_FLAG("structure", &q->structure),
                                     ABBE_LIB_COUNT("seed", &q->seed, 0, 9e15)};
   abbe_result result = abbe_library_settings_read("compare", known, sizeof known / sizeof *known,
                                                   settings, count, error);
@@ -63,8 +64,10 @@ static abbe_result compare(const request *q, const abbe_lib_picture *const pictu
     result = abbe_field_align(&c->field[0], sides[0], &c->field[1], sides[1], error);
   if (result == ABBE_OK) result = find_mask(q, drawn, c, error);
   if (result != ABBE_OK) return result;
-  const abbe_compare_options options = {
-      .mask = c->mask.count > 0 ? &c->mask : NULL, .best_scale = q->best_scale, .seed = q->seed};
+  const abbe_compare_options options = {.mask = c->mask.count > 0 ? &c->mask : NULL,
+                                        .best_scale = q->best_scale,
+                                        .structure = q->structure,
+                                        .seed = q->seed};
   return abbe_compare(&c->field[0], &c->field[1], &options, &c->comparison, error);
 }
 

@@ -20,8 +20,9 @@ typedef struct abbe_lib_comparison abbe_lib_comparison;
 /* Both pictures are copied. mask: a picture whose first channel is above 0.5 inside, or NULL.
  * Settings: mask (caustic: the brightest pixels of the reference's caustic; instead of a drawn
  * one), mask_share (of the caustic's light, 0.95), best_scale (1: the test times the factor that
- * fits best), seed (of the noise that stands in for the reference's). ABBE_INVALID_ARGUMENT where
- * the two cannot be compared, with what differs; ABBE_NO_MEMORY. */
+ * fits best), structure (1: SSIM and both FLIP too), seed (of the noise that stands in for the
+ * reference's). ABBE_INVALID_ARGUMENT where the two cannot be compared, with what differs;
+ * ABBE_NO_MEMORY. */
 abbe_result abbe_lib_comparison_make(const abbe_lib_picture *reference,
                                      const abbe_lib_picture *test, const abbe_lib_picture *mask,
                                      const char *const *settings, size_t count,

@@ -19,7 +19,10 @@ if(ABBE_PYTHON)
   if(no_numpy EQUAL 0)
     add_test(NAME python COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/python/check ${CMAKE_COMMAND}
              ${PROJECT_BINARY_DIR} ${ABBE_PYTHON} ${PROJECT_SOURCE_DIR})
-    abbe_label(program NAMES python)
+    add_test(NAME design_page
+      COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
+        docs/design.md)
+    abbe_label(program NAMES python design_page)
   endif()
 endif()
 add_test(NAME scripts COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/check)

@@ -46,6 +46,7 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(validate, "hold the reference tracer against optics that is known")
 /* In Python, and not among those whose options the program knows. */
 #define ABBE_PYTHON_COMMANDS(X)                                                                    \
+  X(design, "makes a pane whose caustic is a picture, a prism or a pair without colour")           \
   X(sweep, "measures settings: time against error, and which are worth it")
 #define ABBE_COMMANDS(X) ABBE_SCENE_COMMANDS(X) ABBE_PICTURE_COMMANDS(X) ABBE_DATA_COMMANDS(X)
 

@@ -37,9 +37,10 @@ TEST(a_factor_is_found) {
   assert_near(value_of(c, "energy_ratio"), 2, 1e-6);
   assert_true(value_of(c, "ciede2000_mean") > 1);
   abbe_lib_comparison_free(c);
-  const char *const best[] = {"best_scale=1"};
-  OK(abbe_lib_comparison_make(a, b, NULL, best, 1, &c, &error));
+  const char *const best[] = {"best_scale=1", "structure=1"};
+  OK(abbe_lib_comparison_make(a, b, NULL, best, 2, &c, &error));
   assert_near(value_of(c, "relative_rmse"), 0, 1e-6);
+  assert_near(value_of(c, "ssim"), 1, 1e-6);
   abbe_lib_comparison_free(c);
   abbe_lib_picture_free(a);
 }

@@ -1,12 +1,12 @@
 """`abbe sweep`."""
 import argparse
-import difflib
 import os
 import signal
 import sys
 
 import abbe
 
+from .._arguments import Parser, choice, count, near, target
 from . import grids, measure, presets, show, studies
 from .table import ERRORS, TIMES, Wrong, join, load
 
@@ -34,38 +34,6 @@ AXES = {"profiles": grids.PROFILES, "wavelengths": (1, 256), "photons": (1, 1638
 TRACED = ("spp", "traced_photons", "texels", "physics", "decompose", "trace_only")
 
 
-class Parser(argparse.ArgumentParser):
-    def error(self, message):
-        sys.stderr.write(f"{self.prog}: {message}\nTry '{self.prog} --help'.\n")
-        sys.exit(2)
-
-
-def _near(text, names):
-    near = difflib.get_close_matches(text, names, 1)
-    return f"; did you mean '{near[0]}'?" if near else ""
-
-
-def _count(option, least, most):
-    def read(text):
-        try:
-            value = int(text)
-        except ValueError:
-            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number") from None
-        if not least <= value <= most:
-            raise argparse.ArgumentTypeError(f"{text} is not from {least} to {most}")
-        return value
-    return read
-
-
-def _choice(*names):
-    def read(text):
-        if text not in names:
-            raise argparse.ArgumentTypeError(f"'{text}' is none of {', '.join(names)}"
-                                             + _near(text, names))
-        return text
-    return read
-
-
 def _list(axis):
     def read(text):
         words, limits = text.split(","), AXES[axis]
@@ -75,9 +43,9 @@ def _list(axis):
         if limits is None:
             return words
         if isinstance(limits[0], str):
-            return [_choice(*limits)(word) for word in words]
+            return [choice(*limits)(word) for word in words]
         if axis != "share":
-            return [_count(axis, *limits)(word) for word in words]
+            return [count(axis, *limits)(word) for word in words]
         try:
             values = [float(word) for word in words]
         except ValueError:
@@ -110,17 +78,9 @@ def _part(text):
 
 def _error(text):
     if text not in ERRORS:
-        raise argparse.ArgumentTypeError(f"'{text}' is no error{_near(text, ERRORS)}; one is: "
+        raise argparse.ArgumentTypeError(f"'{text}' is no error{near(text, ERRORS)}; one is: "
                                          + " ".join(ERRORS))
     return text
-
-
-def _target(*ends):
-    def read(text):
-        if not text.lower().endswith(ends):
-            raise argparse.ArgumentTypeError(f"'{text}' does not end with {' or '.join(ends)}")
-        return text
-    return read
 
 
 def _parser():
@@ -132,13 +92,13 @@ def _parser():
         "time, and what published methods\ngive for it.")
     out.add_argument("files", nargs="*", help=argparse.SUPPRESS)
     add = out.add_argument
-    add("-o", "--output", metavar="FILE.csv", type=_target(".csv"),
+    add("-o", "--output", metavar="FILE.csv", type=target(".csv"),
         help="the table; rows that it holds are not measured again. Given tables: all of their rows")
-    add("--plot", metavar="FILE", type=_target(".png", ".svg", ".pdf"),
+    add("--plot", metavar="FILE", type=target(".png", ".svg", ".pdf"),
         help="error against time, log-log; of several tables a row of charts each")
-    add("--report", metavar="FILE.md", type=_target(".md"),
+    add("--report", metavar="FILE.md", type=target(".md"),
         help="a page with the Pareto front and pictures beside it")
-    add("--write-presets", metavar="FILE.yaml", type=_target(".yaml"),
+    add("--write-presets", metavar="FILE.yaml", type=target(".yaml"),
         help="presets off the Pareto fronts of the given tables")
     add("--presets", metavar="FILE.yaml",
         help="say what these promise beside what was met (the shipped ones)")
@@ -146,14 +106,14 @@ def _parser():
         "wavelengths, pixels, faces, share of the view")
     add("--error", metavar="COLUMN", type=_error, default="caustic_de",
         help="that makes the Pareto front: caustic_de, map_rmse, picture_de, ... (caustic_de)")
-    add("--time", metavar="|".join(TIMES), type=_choice(*TIMES), default="frame",
+    add("--time", metavar="|".join(TIMES), type=choice(*TIMES), default="frame",
         help="that makes the Pareto front: a frame once the scene stands, one after a camera's "
         "move, or a whole process with its shaders cached or not (frame)")
     add("--json", action="store_true", help="all rows as JSON on standard output")
     add("-q", "--quiet", action="store_true", help="no progress")
     add = out.add_argument_group("settings").add_argument
     names = (*grids.GRIDS, "presets")
-    add("--grid", metavar="|".join(names), type=_choice(*names), help="a named set of settings; "
+    add("--grid", metavar="|".join(names), type=choice(*names), help="a named set of settings; "
         "presets: do they keep their promise here? (quick)")
     for axis, words in (
             ("profiles", ",".join(grids.PROFILES) + " (all)"), ("wavelengths", "such as 3,7,21"),
@@ -166,12 +126,12 @@ def _parser():
             ("history", "frames that a picture is made of, 1 to 4: the error after 1, 2, 4 and 8"),
             ("passes", "of the tracer, each of photons x photons photons")):
         add("--" + axis, metavar="LIST", type=_list(axis), help=words)
-    add("--frames", metavar="N", type=_count("frames", 1, 1000), default=5,
+    add("--frames", metavar="N", type=count("frames", 1, 1000), default=5,
         help="warm up, then the median of N (5)")
     add("--processes", action="store_true", help="time whole processes too: warm ones, and cold "
         "ones of each contestant's front")
     add("--size", metavar="WxH", type=_size, help="pixels; the scene's own without")
-    add("--backend", metavar="NAME", type=_choice("cpu", "gpu", "auto"), default="auto",
+    add("--backend", metavar="NAME", type=choice("cpu", "gpu", "auto"), default="auto",
         help="cpu, gpu, or auto: a GPU where there is one (auto)")
     add("--materials", metavar="TABLE", help="a table instead of the scene's")
     add("--list", action="store_true", help="only say which settings the grid has")
@@ -180,16 +140,16 @@ def _parser():
     add = out.add_argument_group("the reference").add_argument
     add("--reference", metavar="FILE.exr", help="a traced picture (traced and kept beside it)")
     add("--reference-map", metavar="FILE.exr", help="a traced receiver map")
-    add("--spp", metavar="N", type=_count("spp", 2, 1000000), help="passes of the reference (64)")
-    add("--traced-photons", metavar="N", type=_count("traced-photons", 1, 1 << 30),
+    add("--spp", metavar="N", type=count("spp", 2, 1000000), help="passes of the reference (64)")
+    add("--traced-photons", metavar="N", type=count("traced-photons", 1, 1 << 30),
         help="photons a pass (1048576)")
-    add("--texels", metavar="N", type=_count("texels", 1, 16384),
+    add("--texels", metavar="N", type=count("texels", 1, 16384),
         help="side of the reference's map (256)")
     add("--decompose", action="store_true", default=None,
         help="trace matched physics too: what is the model's, and what is sampling's?")
     add("--trace-only", action="store_true", default=None,
         help="trace the references, for sweeps to come, and measure nothing")
-    add("--physics", metavar="NAME", type=_choice("full", "matched"),
+    add("--physics", metavar="NAME", type=choice("full", "matched"),
         help="of the reference: full or matched (full)")
     return out
 
@@ -424,10 +384,7 @@ def _run(parser, q, bar):
 def main():
     """Exit codes: 0 done, 1 failed, 2 used wrongly."""
     parser = _parser()
-    q, others = parser.parse_known_intermixed_args()
-    for other in others:
-        options = [name for action in parser._actions for name in action.option_strings]
-        parser.error(f"there is no option '{other}'{_near(other.partition('=')[0], options)}")
+    q = parser.known()
     _check(parser, q)
     bar = Bar(q.quiet)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
