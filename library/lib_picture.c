@@ -1,6 +1,7 @@
 #include "library/lib_picture.h"
 
 #include "colorimetry/image/exr.h"
+#include "colorimetry/image/picture_file.h"
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/rgb_space.h"
 #include "colorimetry/screen/screen_png.h"
@@ -48,7 +49,7 @@ abbe_result abbe_lib_picture_load(const char *path, abbe_lib_picture **out, abbe
   ABBE_REQUIRE(path && out, error);
   abbe_image image = {0};
   *out = NULL;
-  ABBE_TRY(is_png(path) ? abbe_png_read(path, &image, error) : abbe_exr_read(path, &image, error));
+  ABBE_TRY((is_png(path) ? abbe_png_read : abbe_picture_file_read)(path, &image, error));
   return abbe_library_picture_adopt(&image, out, error);
 }
 

@@ -134,6 +134,7 @@ foreach(name view_camera view_document view_events view_feed view_files view_gua
     view_scene view_state)
   abbe_test(${name} cpu abbe_view_state abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
+target_link_libraries(test_view_inspect PRIVATE exr_library)
 abbe_test(view_command program SHARES 3 abbe_colorimetry abbe_spectral abbe_base)
 target_compile_definitions(test_view_command PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>"
   $<$<BOOL:${ABBE_VIEWER}>:ABBE_HAVE_VIEW>)

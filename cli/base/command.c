@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "colorimetry/image/exr.h"
+#include "colorimetry/image/picture_file.h"
 #include "colorimetry/screen/screen_file.h"
 
 #include <cjson/cJSON.h>
@@ -135,7 +135,7 @@ void abbe_command_note_part(const char *name, const char *part) {
 }
 
 abbe_result abbe_command_read_picture(const char *path, struct abbe_image *out, abbe_error *error) {
-  ABBE_TRY(abbe_exr_read(path, out, error));
+  ABBE_TRY(abbe_picture_file_read(path, out, error));
   abbe_command_note_part(path, out->part);
   return ABBE_OK;
 }

@@ -116,7 +116,7 @@ void abbe_command_note_odd(const char *name, const struct abbe_image_odd *odd, c
 
 /* The same about which of a file's several parts the picture is: an abbe_image's `part`. */
 void abbe_command_note_part(const char *name, const char *part);
-/* Reads an OpenEXR picture with that note. Errors of abbe_exr_read. */
+/* Reads a scene-linear picture with that note. Errors of abbe_picture_file_read. */
 abbe_result abbe_command_read_picture(const char *path, struct abbe_image *out, abbe_error *error);
 
 /* json as text that ends with a newline, always valid UTF-8 whatever strings it was given

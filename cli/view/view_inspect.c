@@ -100,8 +100,7 @@ static void go_to(inspection *i, size_t at) {
   if (at == i->at) return;
   i->pictures->other = i->at;
   i->look.difference = false;
-  const abbe_image *from = &i->pictures->picture[i->at].image,
-                   *to = &i->pictures->picture[at].image;
+  const abbe_inspect_picture *from = &i->pictures->picture[i->at], *to = &i->pictures->picture[at];
   if (from->width != to->width || from->height != to->height) i->pictures->zoom = 0;
   i->at = at;
   i->stale = true;
@@ -123,7 +122,7 @@ void abbe_view_inspect_key(abbe_view_session *app, int key) {
 /* ---- by hand ---- */
 
 static void mark(inspection *i, const size_t size[2], const double from[2], const double to[2]) {
-  const abbe_image *image = &shown_of(i)->image;
+  const abbe_inspect_picture *image = shown_of(i);
   const double most[2] = {(double)image->width - 1, (double)image->height - 1};
   for (int k = 0; k < 2; k++) {
     double at[2];
@@ -187,8 +186,10 @@ static void draw_file(abbe_view_session *app) {
   if (s->count == 1) abbe_ui_text(DIM, names[0]);
   if (s->count > 1 && abbe_ui_choose("picture", names, NULL, s->count, &at)) go_to(i, at);
   if (s->count > 1) abbe_view_panel_pair("beside (b, v)", "%s", names[s->other]);
-  abbe_view_panel_pair("pixels", "%zu x %zu, %zu channels", image->width, image->height,
-                       image->channels);
+  abbe_view_panel_pair("pixels", "%zu x %zu, %zu channels", p->width, p->height, image->channels);
+  if (p->coarse > 0)
+    abbe_view_panel_pair("in memory", "%zu x %zu; finer ones are read", image->width,
+                         image->height);
   if (image->part[0] != '\0') abbe_view_panel_pair("part", "%s", image->part);
   if (p->bands.count > 0)
     abbe_view_panel_pair("bands", "%zu, %.5g to %.5g nm", p->bands.count, p->bands.lambda_nm[0],
@@ -360,6 +361,7 @@ static void draw_probe(const inspection *i) {
   else
     abbe_view_panel_pair("region", "%zu, %zu to %zu, %zu: %zu pixels", w[0], w[1], w[2], w[3],
                          q->pixels);
+  if (q->side > 1) abbe_view_panel_pair("of means of", "%zu x %zu pixels", q->side, q->side);
   if (q->odd > 0) abbe_view_panel_pair("left out", "%zu that are not finite", q->odd);
   if (q->coloured) {
     const char *unit = q->unit > 0 ? luminous_unit(shown_of(i)) : "";
@@ -462,8 +464,8 @@ bool abbe_view_inspect_value(const abbe_view_session *app, const char *name, cha
     double value;
   } numbers[] = {{"first", app->first_s},
                  {"rate", abbe_view_session_rate(app)},
-                 {"width", (double)p->image.width},
-                 {"height", (double)p->image.height},
+                 {"width", (double)p->width},
+                 {"height", (double)p->height},
                  {"bands", (double)p->bands.count},
                  {"pixels", (double)q->pixels},
                  {"infinite", (double)p->odd.infinite},

@@ -62,6 +62,37 @@ static bool read_unit(const char *text, double *unit) {
   return true;
 }
 
+/* The layout of Ocean: CHANNEL.wavelength is what light the channel has, in metres. It is called
+ * as its wavelength is in the spectral layout. */
+static abbe_result name_band(const exr_attribute_t *a, const abbe_exr_stream *s, abbe_image *image,
+                             abbe_error *error) {
+  const char *dot = strrchr(a->name, '.');
+  double metres = NAN;
+  char name[64], digits[32];
+  const char *end = "";
+  if (dot == NULL || strcmp(dot, ".wavelength") != 0) return ABBE_OK;
+  size_t c = 0;
+  while (c < image->channels && (strlen(image->channel[c]) != (size_t)(dot - a->name) ||
+                                 memcmp(image->channel[c], a->name, (size_t)(dot - a->name)) != 0))
+    c++;
+  if (c == image->channels) return ABBE_OK;
+  if (a->type == EXR_ATTR_FLOAT) metres = (double)a->f;
+  if (a->type == EXR_ATTR_DOUBLE) metres = a->d;
+  if (a->type == EXR_ATTR_STRING && !abbe_number_read(a->string->str, &end, &metres)) metres = NAN;
+  if (*end != '\0' || !(metres > 1e-12 && metres < 1))
+    return abbe_error_set(error, ABBE_PARSE,
+                          "%s: its attribute %s is no wavelength in metres, such as 5.5e-7",
+                          s->path, a->name);
+  abbe_number_format(digits, sizeof digits, "%.6g", 1e9 * metres); /* what a float has */
+  abbe_number_read(digits, &end, &metres);
+  abbe_image_band_name(metres, name, sizeof name);
+  char *text = strdup(name);
+  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", s->path);
+  free(image->channel[c]);
+  image->channel[c] = text;
+  return ABBE_OK;
+}
+
 static abbe_result read_attributes(exr_context_t context, int part, const abbe_exr_stream *s,
                                    abbe_image *image, double *unit, abbe_error *error) {
   int32_t count = 0;
@@ -75,6 +106,7 @@ static abbe_result read_attributes(exr_context_t context, int part, const abbe_e
                             c->blue_x, c->blue_y, c->white_x, c->white_y};
       memcpy(image->xy, xy, sizeof xy);
     }
+    ABBE_TRY(name_band(a, s, image, error));
     if (a->type != EXR_ATTR_STRING || a->name[0] == '\0' || a->string->str == NULL) continue;
     if (strcmp(a->name, ABBE_EXR_STORAGE_NAME) == 0) continue;
     if (strcmp(a->name, ABBE_EXR_UNIT_NAME) == 0) {
@@ -231,7 +263,7 @@ static exr_result_t read_lines(exr_context_t context, const abbe_exr_layout *l,
   return rv;
 }
 
-static exr_result_t read_tiles(exr_context_t context, const abbe_exr_layout *l,
+static exr_result_t read_tiles(exr_context_t context, const abbe_exr_layout *l, int level,
                                const abbe_image *image, exr_decode_pipeline_t *pipe) {
   uint32_t w = 0, h = 0;
   exr_tile_level_mode_t levels;
@@ -246,22 +278,78 @@ static exr_result_t read_tiles(exr_context_t context, const abbe_exr_layout *l,
       to.x = (int64_t)l->data.min.x - l->display.min.x + x;
       to.y = (int64_t)l->data.min.y - l->display.min.y + y;
       if (!is_shown(&to, w, h)) continue;
-      rv = exr_read_tile_chunk_info(context, l->part, (int)(x / w), (int)(y / h), 0, 0, &chunk);
+      rv = exr_read_tile_chunk_info(context, l->part, (int)(x / w), (int)(y / h), level, level,
+                                    &chunk);
       if (rv == 0) rv = read_chunk(context, &chunk, width - x, height - y, &to, pipe);
     }
   return rv;
 }
 
-static abbe_result read_image(exr_context_t context, const abbe_exr_stream *s, abbe_image *image,
-                              abbe_error *error) {
+/* Which pixels are wanted: zeroed, all of the picture. */
+typedef struct request {
+  abbe_exr_levels *levels; /* NULL: pixels; else these alone */
+  bool by_level;
+  size_t level;
+  const size_t *window;
+} request;
+
+static size_t count_levels(exr_context_t context, const abbe_exr_layout *l) {
+  int32_t x = 1, y = 1;
+  const bool same = memcmp(&l->data, &l->display, sizeof l->data) == 0;
+  if (l->storage != EXR_STORAGE_TILED || !same ||
+      exr_get_tile_levels(context, l->part, &x, &y) != 0)
+    return 1;
+  return (size_t)(x < y ? x : y);
+}
+
+/* The layout becomes that of a level, whose first pixel is (0, 0), and of a window in it. */
+static abbe_result choose_level(exr_context_t context, const abbe_exr_stream *s, const request *r,
+                                abbe_exr_layout *l, abbe_error *error) {
+  int32_t width = 0, height = 0;
+  if (!r->by_level) return ABBE_OK;
+  if (r->level >= count_levels(context, l))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: it has no level %zu", s->path,
+                          r->level);
+  width = (int32_t)abbe_exr_width(l->data);
+  height = (int32_t)abbe_exr_height(l->data);
+  exr_result_t rv = 0;
+  if (r->level > 0)
+    rv = exr_get_level_sizes(context, l->part, (int)r->level, (int)r->level, &width, &height);
+  if (rv != 0) return abbe_exr_fail(s, rv, error);
+  l->data.min.x = l->data.min.y = 0;
+  l->data.max.x = width - 1;
+  l->data.max.y = height - 1;
+  l->display = l->data;
+  const size_t *w = r->window;
+  if (w == NULL) return ABBE_OK;
+  if (w[0] > w[2] || w[1] > w[3] || w[2] >= (size_t)width || w[3] >= (size_t)height)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: pixels %zu, %zu to %zu, %zu are not in its level %zu of %d x %d",
+                          s->path, w[0], w[1], w[2], w[3], r->level, (int)width, (int)height);
+  l->display.min.x = (int32_t)w[0];
+  l->display.min.y = (int32_t)w[1];
+  l->display.max.x = (int32_t)w[2];
+  l->display.max.y = (int32_t)w[3];
+  return ABBE_OK;
+}
+
+static abbe_result read_image(exr_context_t context, const abbe_exr_stream *s, const request *r,
+                              abbe_image *image, abbe_error *error) {
   abbe_exr_layout l = {0};
   double unit = 1;
-  abbe_result result = abbe_exr_layout_find(context, s, &l, error);
-  if (result == ABBE_OK) result = make_image(context, s, &l, image, &unit, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_exr_layout_find(context, s, &l, error));
+  if (r->levels != NULL) {
+    *r->levels =
+        (abbe_exr_levels){count_levels(context, &l), (size_t)abbe_exr_width(l.display),
+                          (size_t)abbe_exr_height(l.display), (size_t)l.channels->num_channels};
+    return ABBE_OK;
+  }
+  ABBE_TRY(choose_level(context, s, r, &l, error));
+  ABBE_TRY(make_image(context, s, &l, image, &unit, error));
   exr_decode_pipeline_t pipe = EXR_DECODE_PIPELINE_INITIALIZER;
-  exr_result_t rv = l.storage == EXR_STORAGE_TILED ? read_tiles(context, &l, image, &pipe)
-                                                   : read_lines(context, &l, image, &pipe);
+  exr_result_t rv = l.storage == EXR_STORAGE_TILED
+                        ? read_tiles(context, &l, (int)r->level, image, &pipe)
+                        : read_lines(context, &l, image, &pipe);
   exr_decoding_destroy(context, &pipe);
   size_t count = unit == 1 ? 0 : image->width * image->height * image->channels;
   for (size_t i = 0; i < count; i++) image->data[i] = (float)((double)image->data[i] * unit);
@@ -287,7 +375,8 @@ static abbe_result open_stream(abbe_exr_stream *s, FILE **file, abbe_error *erro
   return ABBE_OK;
 }
 
-static abbe_result read_stream(abbe_exr_stream *s, abbe_image *image, abbe_error *error) {
+static abbe_result read_stream(abbe_exr_stream *s, const request *r, abbe_image *image,
+                               abbe_error *error) {
   exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
   setup.error_handler_fn = on_error;
   setup.user_data = s;
@@ -299,22 +388,39 @@ static abbe_result read_stream(abbe_exr_stream *s, abbe_image *image, abbe_error
   exr_context_t context = NULL;
   exr_result_t rv = exr_start_read(&context, s->path, &setup);
   if (rv != 0) return abbe_exr_fail_open(s, rv, error);
-  const abbe_result result = read_image(context, s, image, error);
+  const abbe_result result = read_image(context, s, r, image, error);
   exr_finish(&context);
   return result;
 }
 
-abbe_result abbe_exr_read(const char *path, abbe_image *out, abbe_error *error) {
+static abbe_result read_request(const char *path, const request *r, abbe_image *out,
+                                abbe_error *error) {
   *out = (abbe_image){0};
   abbe_exr_stream s = {.path = path, .fd = -1};
   FILE *file = NULL;
   abbe_image image = {0};
   abbe_result result = open_stream(&s, &file, error);
-  if (result == ABBE_OK) result = read_stream(&s, &image, error);
+  if (result == ABBE_OK) result = read_stream(&s, r, &image, error);
   if (file != NULL) fclose(file);
   if (result != ABBE_OK)
     abbe_image_free(&image);
   else
     *out = image;
   return result;
+}
+
+abbe_result abbe_exr_read(const char *path, abbe_image *out, abbe_error *error) {
+  return read_request(path, &(request){0}, out, error);
+}
+
+abbe_result abbe_exr_find_levels(const char *path, abbe_exr_levels *out, abbe_error *error) {
+  abbe_image none;
+  *out = (abbe_exr_levels){0};
+  return read_request(path, &(request){.levels = out}, &none, error);
+}
+
+abbe_result abbe_exr_read_level(const char *path, size_t level, const size_t window[4],
+                                abbe_image *out, abbe_error *error) {
+  return read_request(path, &(request){.by_level = true, .level = level, .window = window}, out,
+                      error);
 }

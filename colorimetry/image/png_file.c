@@ -232,37 +232,11 @@ static void take_samples(const job *j, abbe_image *image) {
                                    : (float)j->rows[i] / 255.0f;
 }
 
-/* The code points of [H273] that are of a display's RGB; false for others. */
+/* The code points of a display's RGB in full range; false for others. */
 static bool decode_cicp(const png_unknown_chunk *chunk, double xy[8], double curve[5]) {
-  static const struct {
-    int code;
-    double xy[8];
-  } primaries[] = {{1, {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290}},
-                   {9, {0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290}},
-                   {12, {0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.3290}}};
-  static const struct {
-    int code;
-    double curve[5];
-  } transfers[] = {{1, {1 / 0.45, 1 / 1.099, 0.099 / 1.099, 1 / 4.5, 0.081}},
-                   {4, {2.2, 1, 0, 0, 0}},
-                   {5, {2.8, 1, 0, 0, 0}},
-                   {8, {1, 1, 0, 0, 0}},
-                   {13, {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045}}};
   const png_byte *code = chunk->data;
-  if (chunk->size != 4 || code[2] != 0 || code[3] != 1) return false;
-  const int transfer = code[1] == 6 || code[1] == 14 || code[1] == 15 ? 1 : code[1];
-  bool found[2] = {false, false};
-  for (size_t i = 0; i < sizeof primaries / sizeof *primaries; i++) {
-    if (primaries[i].code != code[0]) continue;
-    memcpy(xy, primaries[i].xy, sizeof primaries[i].xy);
-    found[0] = true;
-  }
-  for (size_t i = 0; i < sizeof transfers / sizeof *transfers; i++) {
-    if (transfers[i].code != transfer) continue;
-    memcpy(curve, transfers[i].curve, sizeof transfers[i].curve);
-    found[1] = true;
-  }
-  return found[0] && found[1];
+  return chunk->size == 4 && code[1] < 16 && code[2] == 0 && code[3] == 1 &&
+         abbe_rgb_encoding_of_codes(code[0], code[1], xy, curve);
 }
 
 /* By gAMA and cHRM, either of which may be missing; sRGB stands in for both. */

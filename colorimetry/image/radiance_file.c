@@ -1,4 +1,4 @@
-#include "colorimetry/image/radiance_file.h"
+#include "colorimetry/image/picture_file.h"
 
 #include "base/file.h"
 #include "base/number.h"

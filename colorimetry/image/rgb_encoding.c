@@ -109,10 +109,26 @@ static double pq_share(double value) {
   return abbe_difference_pq_light(value) / 10000;
 }
 
-/* With the system gamma of 1.2 of a display of 1000 cd/m2. */
-static double hlg_share(double value) {
+static double hlg_scene(double value) {
   const double a = 0.17883277, b = 0.28466892, c = 0.55991073;
-  return pow(value <= 0.5 ? value * value / 3 : (exp((value - c) / a) + b) / 12, 1.2);
+  return value <= 0.5 ? value * value / 3 : (exp((value - c) / a) + b) / 12;
+}
+
+/* With the system gamma of a display of 1000 cd/m2. */
+#define HLG_GAMMA 1.2
+static double hlg_share(double value) {
+  return pow(hlg_scene(value), HLG_GAMMA);
+}
+
+void abbe_rgb_encoding_hdr_light(int transfer, const double luminance[3], double rgb[3]) {
+  const double white = 203;
+  double y = 0;
+  for (int k = 0; k < 3; k++) {
+    rgb[k] = transfer == 16 ? abbe_difference_pq_light(rgb[k]) / white : hlg_scene(rgb[k]);
+    y += luminance[k] * rgb[k];
+  }
+  for (int k = 0; k < 3 && transfer != 16; k++)
+    rgb[k] *= y > 0 ? pow(y, HLG_GAMMA - 1) * 1000 / white : 0;
 }
 
 static bool follows(const float xyz[ABBE_RGB_ENCODING_PROBES][3], double (*share)(double)) {
@@ -148,6 +164,29 @@ int abbe_rgb_encoding_primaries_code(const double xy[8]) {
     if (same(xy, known, 8, 1e-3)) return codes[i].code;
   }
   return 0;
+}
+
+bool abbe_rgb_encoding_of_codes(int primaries, int transfer, double xy[8], double curve[5]) {
+  static const abbe_gamut gamuts[] = {
+      [1] = ABBE_GAMUT_REC709, [9] = ABBE_GAMUT_REC2020, [12] = ABBE_GAMUT_P3};
+  static const struct {
+    int code;
+    double curve[5];
+  } transfers[] = {{1, {1 / 0.45, 1 / 1.099, 0.099 / 1.099, 1 / 4.5, 0.081}},
+                   {4, {2.2, 1, 0, 0, 0}},
+                   {5, {2.8, 1, 0, 0, 0}},
+                   {8, {1, 1, 0, 0, 0}},
+                   {13, {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045}}};
+  const int code = transfer == 6 || transfer == 14 || transfer == 15 ? 1 : transfer;
+  bool found = code == 16 || code == 18;
+  if (primaries != 1 && primaries != 9 && primaries != 12) return false;
+  abbe_gamut_chromaticities(gamuts[primaries], xy);
+  for (size_t i = 0; i < sizeof transfers / sizeof *transfers; i++) {
+    if (transfers[i].code != code) continue;
+    memcpy(curve, transfers[i].curve, sizeof transfers[i].curve);
+    found = true;
+  }
+  return found;
 }
 
 /* Profiles */

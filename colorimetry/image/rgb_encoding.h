@@ -42,6 +42,12 @@ bool abbe_rgb_encoding_of_hdr_probes(const float xyz[ABBE_RGB_ENCODING_PROBES][3
                                      int *transfer);
 /* The code of [H273] for primaries, 1, 9 or 12; 0 where it has none for them. */
 int abbe_rgb_encoding_primaries_code(const double xy[8]);
+/* What codes of [H273] say: primaries 1, 9 or 12, and a transfer that is an SDR display's, 1, 4, 5,
+ * 6, 8, 13, 14 or 15, or PQ or HLG, which leave curve as it is. False for others. */
+bool abbe_rgb_encoding_of_codes(int primaries, int transfer, double xy[8], double curve[5]);
+/* PQ or HLG numbers of a colour become light [BT2100] relative to the white of graphics,
+ * 203 cd/m2 [BT2408]: HLG on a display of 1000 cd/m2. luminance: shares of R, G and B in Y. */
+void abbe_rgb_encoding_hdr_light(int transfer, const double luminance[3], double rgb[3]);
 
 /* An ICC profile of a known encoding, malloc'd, the same bytes each time. ABBE_COLOUR where Little
  * CMS makes none. */

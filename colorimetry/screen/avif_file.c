@@ -11,6 +11,8 @@
 
 /* Quantizers from 0 to 63: no step of an even picture is seen. */
 enum { BEST = 0, WORST = 8, SPEED = 6 };
+#define MOST_BYTES ((size_t)1 << 30)  /* of a file that is read, */
+#define MOST_FREE ((size_t)256 << 20) /* and of pixels however small it is */
 
 static abbe_result fail(const char *path, avifResult why, abbe_error *error) {
   return abbe_error_set(error, why == AVIF_RESULT_OUT_OF_MEMORY ? ABBE_NO_MEMORY : ABBE_IO,
@@ -102,5 +104,90 @@ abbe_result abbe_avif_write(const char *path, const abbe_image *image, int bits,
   if (result == ABBE_OK) result = fill(path, image, bits, out, error);
   if (result == ABBE_OK) result = encode(path, out, error);
   avifImageDestroy(out);
+  return result;
+}
+
+/* ---- reading ---- */
+
+static abbe_result unread(const char *path, avifResult why, abbe_error *error) {
+  return abbe_error_set(error, why == AVIF_RESULT_OUT_OF_MEMORY ? ABBE_NO_MEMORY : ABBE_PARSE,
+                        "%s: it cannot be read as AVIF: %s", path, avifResultToString(why));
+}
+
+/* What its numbers mean, which is sRGB where the file does not say it. */
+static abbe_result take_colour(const char *path, const avifImage *from, abbe_image *image,
+                               abbe_error *error) {
+  enum { UNSPECIFIED = 2 };
+  const int primaries = from->colorPrimaries == UNSPECIFIED ? 1 : from->colorPrimaries;
+  const int transfer =
+      from->transferCharacteristics == UNSPECIFIED ? 13 : from->transferCharacteristics;
+  if (from->icc.size > 0)
+    return abbe_rgb_encoding_profile_to_srgb(image, from->icc.data, from->icc.size, path, error);
+  if (!abbe_rgb_encoding_of_codes(primaries, transfer, image->xy, image->curve))
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%s: its primaries %d and transfer %d are not known here; primaries 1, 9 "
+                          "or 12 with transfer 1, 4, 5, 6, 8, 13 to 16 or 18 are",
+                          path, primaries, transfer);
+  if (transfer == 16 || transfer == 18) image->transfer = transfer;
+  return ABBE_OK;
+}
+
+static abbe_result take_pixels(const char *path, const avifImage *from, abbe_image *image,
+                               abbe_error *error) {
+  static const char *const names[] = {"R", "G", "B"};
+  avifRGBImage rgb;
+  ABBE_TRY(abbe_image_make(from->width, from->height, 3, names, image, error));
+  const size_t count = 3 * image->width * image->height;
+  uint16_t *pixel = malloc(count * sizeof *pixel);
+  if (pixel == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "%s: there is no memory for its pixels", path);
+  avifRGBImageSetDefaults(&rgb, from);
+  rgb.format = AVIF_RGB_FORMAT_RGB;
+  rgb.depth = 16;
+  rgb.pixels = (uint8_t *)pixel;
+  rgb.rowBytes = (uint32_t)(3 * image->width * sizeof *pixel);
+  const avifResult made = avifImageYUVToRGB(from, &rgb);
+  for (size_t i = 0; made == AVIF_RESULT_OK && i < count; i++)
+    image->data[i] = (float)pixel[i] / 65535;
+  free(pixel);
+  return made == AVIF_RESULT_OK ? take_colour(path, from, image, error) : unread(path, made, error);
+}
+
+static abbe_result decode(const char *path, avifDecoder *decoder, const char *data, size_t size,
+                          abbe_image *image, abbe_error *error) {
+  const avifTransformFlags turns = AVIF_TRANSFORM_CLAP | AVIF_TRANSFORM_IROT | AVIF_TRANSFORM_IMIR;
+  avifResult done = avifDecoderSetIOMemory(decoder, (const uint8_t *)data, size);
+  decoder->ignoreExif = decoder->ignoreXMP = AVIF_TRUE;
+  decoder->imageSizeLimit = ABBE_IMAGE_MAX_SIDE * (ABBE_IMAGE_MAX_SIDE / 8);
+  if (done == AVIF_RESULT_OK) done = avifDecoderParse(decoder);
+  if (done != AVIF_RESULT_OK) return unread(path, done, error);
+  const avifImage *from = decoder->image;
+  if ((from->transformFlags & turns) != 0)
+    return abbe_error_set(
+        error, ABBE_UNSUPPORTED,
+        "%s: it is to be turned, mirrored or cut out (irot, imir, clap), which is "
+        "not done here; save it upright",
+        path);
+  ABBE_TRY(abbe_image_check_expansion(path, from->width, from->height, 3, size, MOST_FREE, error));
+  done = avifDecoderNextImage(decoder);
+  return done == AVIF_RESULT_OK ? take_pixels(path, from, image, error) : unread(path, done, error);
+}
+
+abbe_result abbe_avif_read(const char *path, abbe_image *out, abbe_error *error) {
+  char *data = NULL;
+  size_t size = 0;
+  abbe_image image = {0};
+  *out = image;
+  ABBE_TRY(abbe_file_read(path, MOST_BYTES, &data, &size, error));
+  avifDecoder *decoder = avifDecoderCreate();
+  abbe_result result = decoder != NULL
+                           ? decode(path, decoder, data, size, &image, error)
+                           : abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for it", path);
+  if (decoder != NULL) avifDecoderDestroy(decoder);
+  free(data);
+  if (result == ABBE_OK)
+    *out = image;
+  else
+    abbe_image_free(&image);
   return result;
 }

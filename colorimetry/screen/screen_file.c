@@ -9,6 +9,11 @@
 #define AVIF(writer) NULL, writer
 #else
 #define AVIF(writer) "libavif", NULL
+abbe_result abbe_avif_read(const char *path, abbe_image *out, abbe_error *error) {
+  *out = (abbe_image){0};
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "%s: this abbe was built without libavif; a .png can be read", path);
+}
 #endif
 #ifdef ABBE_HAS_JPEG
 #define JPEG(writer) NULL, writer

@@ -1,7 +1,7 @@
 /* screen_file.h: files that hold a picture encoded for a display, by their names' endings: PNG,
  * AVIF, WebP, GIF and JPEG, still, and frames of PNG as one that moves.
  *
- * It encodes nothing for a display (screen_png.h) and reads nothing but frames. PNG and GIF are
+ * It encodes nothing for a display (screen_png.h) and reads frames and AVIF. PNG and GIF are
  * Abbe's own or libpng's; the others are written where the build has found their libraries.
  */
 #ifndef ABBE_COLORIMETRY_SCREEN_SCREEN_FILE_H
@@ -58,6 +58,12 @@ abbe_result abbe_screen_file_write(const char *path, const abbe_image *image, in
  * PNG. */
 abbe_result abbe_screen_file_move(const char *path, const char *const *frame, size_t count,
                                   double per_second, abbe_error *error);
+
+/* Reads the first picture of an AVIF: R, G, B from 0 to 1, encoded as the image's xy and curve or
+ * transfer say; a profile's are made sRGB, and so are those that state nothing. ABBE_IO, ABBE_PARSE
+ * for a broken file; ABBE_UNSUPPORTED for codes that are no display's RGB, for a picture that is to
+ * be turned or cut out, for pixels that are too many for the file, and without libavif. */
+abbe_result abbe_avif_read(const char *path, abbe_image *out, abbe_error *error);
 
 /* ---- Internal to the folder ---- */
 

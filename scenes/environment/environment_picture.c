@@ -1,10 +1,8 @@
 #include "scenes/environment/environment_picture.h"
 
-#include "base/file.h"
 #include "base/maths.h"
-#include "colorimetry/image/exr.h"
+#include "colorimetry/image/picture_file.h"
 #include "colorimetry/image/picture_space.h"
-#include "colorimetry/image/radiance_file.h"
 #include "colorimetry/rgb_space.h"
 
 #include <stdbool.h>
@@ -16,18 +14,11 @@ enum { CUBE_PARTS = 4, CUBE_MAX_SIDE = 8192 };
 /* --- the file --- */
 
 static abbe_result read_image(const char *path, abbe_image *out, bool *is_exr, abbe_error *error) {
-  FILE *stream = NULL;
-  char head[4] = {0};
-  char *name = strndup(path, abbe_exr_file_length(path));
-  if (name == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for it", path);
-  const abbe_result result = abbe_file_open(name, &stream, NULL, error);
-  free(name);
-  if (result != ABBE_OK) return result;
-  const size_t size = fread(head, 1, sizeof head, stream);
-  fclose(stream);
-  *is_exr = size == 4 && memcmp(head, "\x76\x2f\x31\x01", 4) == 0;
-  if (*is_exr) return abbe_exr_read(path, out, error);
-  if (size >= 2 && memcmp(head, "#?", 2) == 0) return abbe_radiance_read(path, out, error);
+  abbe_picture_file_kind kind = ABBE_PICTURE_FILE_OTHER;
+  ABBE_TRY(abbe_picture_file_find_kind(path, &kind, error));
+  *is_exr = kind == ABBE_PICTURE_FILE_EXR;
+  if (*is_exr || kind == ABBE_PICTURE_FILE_RADIANCE)
+    return abbe_picture_file_read(path, out, error);
   return abbe_error_set(error, ABBE_UNSUPPORTED,
                         "%s: it is neither an OpenEXR nor a Radiance picture; surroundings are of "
                         "these",

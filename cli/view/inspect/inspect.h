@@ -1,9 +1,10 @@
 /* inspect.h: pictures of any program as a window shows them: which numbers, how they look, and what
  * a pixel or a region has.
  *
- * It knows no window and draws nothing. Pictures are read once and stay as they are. What is shown
- * is converted tile by tile, at about the screen's resolution, and kept until the look changes.
- * Internal to cli/view/.
+ * It knows no window and draws nothing. Pictures are read once and stay as they are; of large ones
+ * whose file has levels of detail a coarse level is, and of finer ones what is shown is read when
+ * it is. What is shown is converted tile by tile, at about the screen's resolution, and kept until
+ * the look changes. Internal to cli/view/.
  */
 #ifndef ABBE_CLI_VIEW_INSPECT_INSPECT_H
 #define ABBE_CLI_VIEW_INSPECT_INSPECT_H
@@ -63,7 +64,9 @@ typedef struct abbe_inspect_level {
 
 typedef struct abbe_inspect_picture {
   const char *path;
-  abbe_image image;
+  size_t width, height; /* of the picture; */
+  size_t coarse;        /* level of it that is in memory, of half the side each; 0: all of it */
+  abbe_image image;     /* that level */
   abbe_spectral_channels bands;
   abbe_picture_space space;
   char note[1024]; /* why its R, G, B, or its bands, are no colour; else "" */
@@ -73,7 +76,7 @@ typedef struct abbe_inspect_picture {
   abbe_inspect_entry *entry;
   const char **name; /* [count] texts of entries; those of channels are the image's */
   abbe_image_odd odd;
-  size_t odd_at[2];       /* the first odd pixel, in the image */
+  size_t odd_at[2];       /* the first odd pixel, in the picture */
   double most;            /* greatest finite magnitude */
   abbe_inspect_look look; /* that the tiles have, of a difference from this picture: */
   size_t other;
@@ -86,7 +89,12 @@ typedef struct abbe_inspect_picture {
   abbe_inspect_level level[ABBE_INSPECT_LEVELS];
 } abbe_inspect_picture;
 
+/* Numbers of a picture with levels that are in memory at most, as long as nothing finer is shown:
+ * 64 MiB. */
+#define ABBE_INSPECT_MOST_NUMBERS ((size_t)1 << 24)
+
 typedef struct abbe_inspect {
+  size_t most_numbers;     /* 0: as above */
   size_t count, at, other; /* pictures; the one that is shown; the one beside it */
   abbe_inspect_picture picture[ABBE_INSPECT_MOST_PICTURES];
   abbe_inspect_look look;
@@ -94,9 +102,9 @@ typedef struct abbe_inspect {
   double zoom;      /* pixels of the screen for one of the image */
 } abbe_inspect;
 
-/* Reads a picture behind the others; path stays the caller's. Errors of abbe_exr_read,
- * abbe_radiance_read, abbe_png_read and abbe_spectral_channels_find; ABBE_UNSUPPORTED for other
- * kinds, ABBE_OUT_OF_RANGE for one picture too many. */
+/* Reads a picture behind the others; path stays the caller's. Errors of abbe_picture_file_read,
+ * abbe_png_read, abbe_avif_read and abbe_spectral_channels_find; ABBE_UNSUPPORTED for other kinds,
+ * ABBE_OUT_OF_RANGE for one picture too many. */
 abbe_result abbe_inspect_open(abbe_inspect *inspect, const char *path, abbe_error *error);
 void abbe_inspect_free(abbe_inspect *inspect);
 
@@ -130,7 +138,8 @@ abbe_result abbe_inspect_draw(abbe_inspect *inspect, size_t width, size_t height
  * stands for what is not known. What is not finite is left out channel by channel, and of the
  * colour the pixels where one of its channels is not. */
 typedef struct abbe_inspect_probe {
-  size_t window[4];   /* x0, y0, x1, y1 in the image, both ends included */
+  size_t window[4];   /* x0, y0, x1, y1 in the picture, both ends included */
+  size_t side;        /* more than 1: its pixels are means of so many a side */
   size_t pixels, odd; /* odd: those where what is shown is not finite */
   size_t channels;
   double *mean, *deviation, *error; /* [channels] */
@@ -148,13 +157,27 @@ abbe_result abbe_inspect_probe_make(const abbe_inspect *inspect, size_t at, cons
                                     abbe_inspect_probe *out, abbe_error *error);
 void abbe_inspect_probe_free(abbe_inspect_probe *probe);
 
-/* Between the sources: the weights of an entry, and what they make of a pixel. */
+/* Between the sources: pixels of a picture that are in memory, those of a level from one on; the
+ * weights of an entry, and what they make of a pixel. */
+typedef struct abbe_inspect_source {
+  const abbe_image *image; /* the picture's, or own */
+  abbe_image own;
+  size_t level, x0, y0;
+} abbe_inspect_source;
+/* Those of a window of the picture, at that level or the next coarser one that there is; what is
+ * not in memory is read. Errors of abbe_exr_read_level; ABBE_INVALID_ARGUMENT where the file has
+ * become another. */
+abbe_result abbe_inspect_source_take(const abbe_inspect_picture *picture, size_t level,
+                                     const size_t window[4], abbe_inspect_source *out,
+                                     abbe_error *error);
+/* The channels of a pixel of the picture, which lies in the window. */
+const float *abbe_inspect_source_pixel(const abbe_inspect_source *source, size_t x, size_t y);
 abbe_result abbe_inspect_mix_make(const abbe_inspect_picture *picture,
                                   const abbe_inspect_entry *entry, const abbe_inspect_look *look,
                                   abbe_inspect_mix *out, abbe_error *error);
 void abbe_inspect_mix_free(abbe_inspect_mix *mix);
-void abbe_inspect_mix_at(const abbe_inspect_mix *mix, const abbe_inspect_picture *picture, size_t x,
-                         size_t y, double out[3]);
+void abbe_inspect_mix_at(const abbe_inspect_mix *mix, const abbe_inspect_picture *picture,
+                         const float *pixel, double out[3]);
 bool abbe_inspect_is_colour(abbe_inspect_kind kind);
 void abbe_inspect_tiles_free(abbe_inspect_picture *picture);
 

@@ -2,9 +2,10 @@
 
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
+#include "colorimetry/image/picture_file.h"
 #include "colorimetry/image/png_file.h"
-#include "colorimetry/image/radiance_file.h"
 #include "colorimetry/image/rgb_encoding.h"
+#include "colorimetry/screen/screen_file.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -22,26 +23,82 @@ static bool ends(const char *path, const char *ending) {
   return length >= n && strncasecmp(path + length - n, ending, n) == 0;
 }
 
-/* Numbers that are encoded for a screen become light. */
+/* Numbers that are encoded for a screen become light: by what the picture states, else as sRGB. */
 static void decode(abbe_image *image) {
-  double curve[5];
-  abbe_rgb_encoding_srgb(image->xy, curve);
-  const size_t count = image->width * image->height * image->channels;
-  for (size_t i = 0; i < count; i++)
-    image->data[i] = (float)abbe_rgb_encoding_light(curve, (double)image->data[i]);
+  double xy[8], curve[5], to_xyz[9];
+  abbe_rgb_encoding_srgb(xy, curve);
+  if (image->xy[7] > 0) memcpy(xy, image->xy, sizeof xy);
+  if (image->curve[0] > 0) memcpy(curve, image->curve, sizeof curve);
+  memcpy(image->xy, xy, sizeof xy);
+  abbe_rgb_space_chromaticities_to_xyz(xy, to_xyz, NULL);
+  for (size_t i = 0; i < image->width * image->height; i++) {
+    float *pixel = image->data + 3 * i;
+    double rgb[3];
+    for (int k = 0; k < 3; k++) rgb[k] = (double)pixel[k];
+    if (image->transfer != 0) abbe_rgb_encoding_hdr_light(image->transfer, to_xyz + 3, rgb);
+    for (int k = 0; k < 3; k++)
+      pixel[k] = (float)(image->transfer != 0 ? rgb[k] : abbe_rgb_encoding_light(curve, rgb[k]));
+  }
   memset(image->curve, 0, sizeof image->curve);
+  image->transfer = 0;
 }
 
-static abbe_result read_image(const char *path, abbe_inspect_picture *p, abbe_error *error) {
-  if (ends(path, ".exr")) return abbe_exr_read(path, &p->image, error);
-  if (ends(path, ".hdr") || ends(path, ".pic")) return abbe_radiance_read(path, &p->image, error);
-  if (!ends(path, ".png"))
+/* Of a picture whose file has levels the finest that has few enough numbers. */
+static abbe_result read_exr(const char *path, size_t most, abbe_inspect_picture *p,
+                            abbe_error *error) {
+  abbe_exr_levels l;
+  ABBE_TRY(abbe_exr_find_levels(path, &l, error));
+  while (p->coarse + 1 < l.count &&
+         (l.width >> p->coarse) * (l.height >> p->coarse) > most / l.channels)
+    p->coarse++;
+  p->width = l.width;
+  p->height = l.height;
+  return p->coarse == 0 ? abbe_exr_read(path, &p->image, error)
+                        : abbe_exr_read_level(path, p->coarse, NULL, &p->image, error);
+}
+
+static abbe_result read_image(const char *path, size_t most, abbe_inspect_picture *p,
+                              abbe_error *error) {
+  const bool png = ends(path, ".png");
+  if (ends(path, ".exr")) return read_exr(path, most, p, error);
+  if (ends(path, ".hdr") || ends(path, ".pic")) {
+    ABBE_TRY(abbe_picture_file_read(path, &p->image, error));
+  } else if (png || ends(path, ".avif")) {
+    ABBE_TRY((png ? abbe_png_read : abbe_avif_read)(path, &p->image, error));
+    p->encoded = true;
+    decode(&p->image);
+  } else {
     return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "%s: pictures that can be looked at are .exr, .hdr, .pic and .png", path);
-  const abbe_result result = abbe_png_read(path, &p->image, error);
-  p->encoded = result == ABBE_OK;
-  if (p->encoded) decode(&p->image);
-  return result;
+                          "%s: pictures that can be looked at are .exr, .hdr, .pic, .png and .avif",
+                          path);
+  }
+  p->width = p->image.width;
+  p->height = p->image.height;
+  return ABBE_OK;
+}
+
+abbe_result abbe_inspect_source_take(const abbe_inspect_picture *p, size_t level,
+                                     const size_t window[4], abbe_inspect_source *out,
+                                     abbe_error *error) {
+  *out = (abbe_inspect_source){.image = &p->image, .level = p->coarse};
+  if (level >= p->coarse) return ABBE_OK;
+  size_t part[4];
+  for (int k = 0; k < 4; k++) { /* levels may be rounded down */
+    const size_t most = (k % 2 == 0 ? p->width : p->height) >> level;
+    part[k] = window[k] >> level < most ? window[k] >> level : most > 0 ? most - 1 : 0;
+  }
+  ABBE_TRY(abbe_exr_read_level(p->path, level, part, &out->own, error));
+  *out = (abbe_inspect_source){&out->own, out->own, level, part[0], part[1]};
+  if (out->own.channels == p->image.channels) return ABBE_OK;
+  abbe_image_free(&out->own);
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: it has become another file", p->path);
+}
+
+const float *abbe_inspect_source_pixel(const abbe_inspect_source *s, size_t x, size_t y) {
+  const size_t most[2] = {s->image->width - 1, s->image->height - 1};
+  const size_t at[2] = {(x >> s->level) - s->x0, (y >> s->level) - s->y0};
+  const size_t px = at[0] < most[0] ? at[0] : most[0], py = at[1] < most[1] ? at[1] : most[1];
+  return s->image->data + (py * s->image->width + px) * s->image->channels;
 }
 
 /* ---- what is in it ---- */
@@ -90,8 +147,8 @@ static void look_for_odd(abbe_inspect_picture *p) {
       if (isfinite(v)) most = v;
     }
     if ((infinite || nan) && p->odd.infinite + p->odd.nan == 0) {
-      p->odd_at[0] = i % image->width;
-      p->odd_at[1] = i / image->width;
+      p->odd_at[0] = i % image->width << p->coarse;
+      p->odd_at[1] = i / image->width << p->coarse;
     }
     p->odd.infinite += infinite;
     p->odd.nan += nan && !infinite;
@@ -200,7 +257,8 @@ abbe_result abbe_inspect_open(abbe_inspect *inspect, const char *path, abbe_erro
                           path, ABBE_INSPECT_MOST_PICTURES);
   abbe_inspect_picture *p = &inspect->picture[inspect->count];
   *p = (abbe_inspect_picture){.path = path};
-  abbe_result result = read_image(path, p, error);
+  const size_t most = inspect->most_numbers > 0 ? inspect->most_numbers : ABBE_INSPECT_MOST_NUMBERS;
+  abbe_result result = read_image(path, most, p, error);
   if (result == ABBE_OK)
     result = abbe_spectral_channels_find(&p->image, NULL, path, &p->bands, error);
   if (result == ABBE_OK) result = rename_bands(p, error);
@@ -315,9 +373,8 @@ static double polarised(const abbe_inspect_mix *mix, const float *pixel) {
   return s[0] > 0 ? sqrt(s[1] * s[1] + s[2] * s[2] + s[3] * s[3]) / s[0] : 0;
 }
 
-void abbe_inspect_mix_at(const abbe_inspect_mix *mix, const abbe_inspect_picture *p, size_t x,
-                         size_t y, double out[3]) {
-  const float *pixel = p->image.data + (y * p->image.width + x) * p->image.channels;
+void abbe_inspect_mix_at(const abbe_inspect_mix *mix, const abbe_inspect_picture *p,
+                         const float *pixel, double out[3]) {
   if (mix->kind == ABBE_INSPECT_DEGREE || mix->kind == ABBE_INSPECT_ANGLE) {
     out[0] = out[1] = out[2] = polarised(mix, pixel);
     return;

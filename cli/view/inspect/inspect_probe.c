@@ -6,10 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const float *pixel_at(const abbe_image *image, size_t x, size_t y) {
-  return image->data + (y * image->width + x) * image->channels;
-}
-
 /* Whether a pixel lacks part of what the mix needs. */
 static bool is_odd(const abbe_inspect_mix *mix, const float *pixel) {
   size_t i = 0;
@@ -37,13 +33,12 @@ static double stated_error(const abbe_image *image, const float *pixel, size_t c
 }
 
 /* count: zeroed, of so many channels */
-static void take_channels(const abbe_inspect_picture *picture, size_t *count,
-                          abbe_inspect_probe *p) {
-  const abbe_image *image = &picture->image;
+static void take_channels(const abbe_inspect_picture *picture, const abbe_inspect_source *from,
+                          size_t *count, abbe_inspect_probe *p) {
   const size_t *w = p->window;
-  for (size_t y = w[1]; y <= w[3]; y++)
-    for (size_t x = w[0]; x <= w[2]; x++) {
-      const float *v = pixel_at(image, x, y);
+  for (size_t y = w[1]; y <= w[3]; y += p->side)
+    for (size_t x = w[0]; x <= w[2]; x += p->side) {
+      const float *v = abbe_inspect_source_pixel(from, x, y);
       p->pixels++;
       p->odd += is_odd(&picture->mix, v);
       add_pixel(v, count, p);
@@ -53,8 +48,9 @@ static void take_channels(const abbe_inspect_picture *picture, size_t *count,
     const double mean = n > 0 ? p->mean[c] / n : NAN;
     const double squares = n > 1 ? (p->deviation[c] - n * mean * mean) / (n - 1) : NAN;
     p->deviation[c] = n > 1 ? sqrt(fmax(0, squares)) : NAN;
-    p->error[c] = p->pixels == 1 ? stated_error(image, pixel_at(image, w[0], w[1]), c)
-                                 : p->deviation[c] / sqrt(n);
+    p->error[c] = p->pixels == 1
+                      ? stated_error(from->image, abbe_inspect_source_pixel(from, w[0], w[1]), c)
+                      : p->deviation[c] / sqrt(n);
     p->mean[c] = first + mean;
   }
 }
@@ -73,13 +69,15 @@ static const abbe_inspect_entry *colour_of(const abbe_inspect *s, const abbe_ins
 }
 
 /* The mean of the pixels that have all of it, ACEScg; false: there is none. */
-static bool mean_of(const abbe_inspect_picture *p, const abbe_inspect_mix *mix, const size_t w[4],
-                    double out[3]) {
+static bool mean_of(const abbe_inspect_picture *p, const abbe_inspect_source *from,
+                    const abbe_inspect_mix *mix, const abbe_inspect_probe *probe, double out[3]) {
+  const size_t *w = probe->window;
   double count = 0, v[3];
-  for (size_t y = w[1]; y <= w[3]; y++)
-    for (size_t x = w[0]; x <= w[2]; x++) {
-      if (is_odd(mix, pixel_at(&p->image, x, y))) continue;
-      abbe_inspect_mix_at(mix, p, x, y, v);
+  for (size_t y = w[1]; y <= w[3]; y += probe->side)
+    for (size_t x = w[0]; x <= w[2]; x += probe->side) {
+      const float *pixel = abbe_inspect_source_pixel(from, x, y);
+      if (is_odd(mix, pixel)) continue;
+      abbe_inspect_mix_at(mix, p, pixel, v);
       for (int k = 0; k < 3; k++) out[k] += v[k];
       count++;
     }
@@ -87,23 +85,26 @@ static bool mean_of(const abbe_inspect_picture *p, const abbe_inspect_mix *mix, 
   return count > 0;
 }
 
-static void take_cloud(const abbe_inspect_picture *p, const abbe_inspect_mix *mix,
-                       const double matrix[9], abbe_inspect_probe *out) {
+static void take_cloud(const abbe_inspect_picture *p, const abbe_inspect_source *from,
+                       const abbe_inspect_mix *mix, const double matrix[9],
+                       abbe_inspect_probe *out) {
   const size_t *w = out->window;
-  size_t step = 1;
+  size_t step = out->side;
   while (((w[2] - w[0]) / step + 1) * ((w[3] - w[1]) / step + 1) > ABBE_INSPECT_CLOUD) step++;
   for (size_t y = w[1]; y <= w[3]; y += step)
     for (size_t x = w[0]; x <= w[2]; x += step) {
       double xyz[3];
-      if (is_odd(mix, pixel_at(&p->image, x, y))) continue;
-      abbe_inspect_mix_at(mix, p, x, y, xyz);
+      const float *pixel = abbe_inspect_source_pixel(from, x, y);
+      if (is_odd(mix, pixel)) continue;
+      abbe_inspect_mix_at(mix, p, pixel, xyz);
       abbe_rgb_space_apply(matrix, xyz, xyz);
       if (abbe_chromaticity_xy(xyz, out->cloud[out->cloud_count])) out->cloud_count++;
     }
 }
 
 static abbe_result take_colour(const abbe_inspect *s, const abbe_inspect_picture *p,
-                               abbe_inspect_probe *out, abbe_error *error) {
+                               const abbe_inspect_source *from, abbe_inspect_probe *out,
+                               abbe_error *error) {
   static const double d65[2] = {0.3127, 0.3290};
   const abbe_inspect_entry *entry = colour_of(s, p);
   abbe_inspect_mix mix;
@@ -113,7 +114,7 @@ static abbe_result take_colour(const abbe_inspect *s, const abbe_inspect_picture
   const abbe_result result = abbe_inspect_mix_make(p, entry, &s->look, &mix, error);
   if (result != ABBE_OK) return result;
   abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
-  const bool some = mean_of(p, &mix, out->window, out->xyz);
+  const bool some = mean_of(p, from, &mix, out, out->xyz);
   abbe_rgb_space_apply(matrix, out->xyz, out->xyz);
   out->unit = mix.unit;
   out->coloured = some && abbe_chromaticity_xy(out->xyz, out->xy);
@@ -123,7 +124,7 @@ static abbe_result take_colour(const abbe_inspect *s, const abbe_inspect_picture
   }
   out->dominant_nm = isfinite(dominant.lambda_nm) ? dominant.lambda_nm : -dominant.complementary_nm;
   out->purity = dominant.purity;
-  take_cloud(p, &mix, matrix, out);
+  take_cloud(p, from, &mix, matrix, out);
   abbe_inspect_mix_free(&mix);
   return ABBE_OK;
 }
@@ -131,11 +132,19 @@ static abbe_result take_colour(const abbe_inspect *s, const abbe_inspect_picture
 abbe_result abbe_inspect_probe_make(const abbe_inspect *s, size_t at, const size_t window[4],
                                     abbe_inspect_probe *out, abbe_error *error) {
   const abbe_inspect_picture *p = &s->picture[at];
+  const size_t numbers = s->most_numbers > 0 ? s->most_numbers : ABBE_INSPECT_MOST_NUMBERS;
+  size_t level = 0;
+  abbe_inspect_source from = {0};
   *out = (abbe_inspect_probe){.channels = p->image.channels};
   for (int k = 0; k < 4; k++) {
-    const size_t most = (k % 2 == 0 ? p->image.width : p->image.height) - 1;
+    const size_t most = (k % 2 == 0 ? p->width : p->height) - 1;
     out->window[k] = window[k] < most ? window[k] : most;
   }
+  const size_t *w = out->window;
+  while (level < p->coarse &&
+         ((w[2] - w[0]) >> level) * ((w[3] - w[1]) >> level) > numbers / out->channels)
+    level++;
+  out->side = (size_t)1 << level;
   out->mean = calloc(out->channels, sizeof *out->mean);
   out->deviation = calloc(out->channels, sizeof *out->deviation);
   out->error = calloc(out->channels, sizeof *out->error);
@@ -143,9 +152,11 @@ abbe_result abbe_inspect_probe_make(const abbe_inspect *s, size_t at, const size
   abbe_result result = ABBE_OK;
   if (out->mean == NULL || out->deviation == NULL || out->error == NULL || count == NULL)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its channels", p->path);
-  if (result == ABBE_OK) take_channels(p, count, out);
+  if (result == ABBE_OK) result = abbe_inspect_source_take(p, level, w, &from, error);
+  if (result == ABBE_OK) take_channels(p, &from, count, out);
   free(count);
-  if (result == ABBE_OK) result = take_colour(s, p, out, error);
+  if (result == ABBE_OK) result = take_colour(s, p, &from, out, error);
+  abbe_image_free(&from.own);
   if (result != ABBE_OK) abbe_inspect_probe_free(out);
   return result;
 }

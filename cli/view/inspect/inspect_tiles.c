@@ -23,14 +23,34 @@ void abbe_inspect_tiles_free(abbe_inspect_picture *p) {
   }
 }
 
+/* Pixels of a picture, and of that which is taken off it. */
+typedef struct pair {
+  abbe_inspect_source of, less;
+} pair;
+
+static void free_pair(pair *from) {
+  abbe_image_free(&from->of.own);
+  abbe_image_free(&from->less.own);
+}
+
+static abbe_result take_pair(const abbe_inspect *s, const abbe_inspect_picture *p, size_t level,
+                             const size_t window[4], pair *out, abbe_error *error) {
+  *out = (pair){0};
+  abbe_result result = abbe_inspect_source_take(p, level, window, &out->of, error);
+  if (result == ABBE_OK && s->look.difference)
+    result = abbe_inspect_source_take(&s->picture[p->other], level, window, &out->less, error);
+  if (result != ABBE_OK) free_pair(out);
+  return result;
+}
+
 /* What is shown of a pixel: less the other picture's, as one number. */
-static void value_at(const abbe_inspect *s, const abbe_inspect_picture *p, size_t x, size_t y,
-                     double out[3]) {
+static void value_at(const abbe_inspect *s, const abbe_inspect_picture *p, const pair *from,
+                     size_t x, size_t y, double out[3]) {
   const abbe_inspect_picture *other = &s->picture[p->other];
   double matrix[9], its[3];
-  abbe_inspect_mix_at(&p->mix, p, x, y, out);
+  abbe_inspect_mix_at(&p->mix, p, abbe_inspect_source_pixel(&from->of, x, y), out);
   if (!s->look.difference) return;
-  abbe_inspect_mix_at(&p->minus, other, x, y, its);
+  abbe_inspect_mix_at(&p->minus, other, abbe_inspect_source_pixel(&from->less, x, y), its);
   for (int k = 0; k < 3; k++) out[k] -= its[k];
   if (abbe_inspect_is_colour(p->mix.kind)) {
     abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
@@ -58,17 +78,19 @@ static void count_bins(abbe_inspect_picture *p, const float *sorted, size_t coun
 
 /* Of pixels evenly taken, at most SAMPLES. */
 static abbe_result measure(const abbe_inspect *s, abbe_inspect_picture *p, abbe_error *error) {
-  const abbe_image *image = &p->image;
   const bool colour = is_colour(s);
+  const size_t coarse = ABBE_INSPECT_LEVELS; /* what is in memory is enough */
   double matrix[9], v[3];
   size_t step = 1, count = 0;
-  while ((image->width / step + 1) * (image->height / step + 1) > SAMPLES) step++;
-  float *sorted = malloc((image->width / step + 1) * (image->height / step + 1) * sizeof *sorted);
+  pair from;
+  ABBE_TRY(take_pair(s, p, coarse, NULL, &from, error));
+  while ((p->width / step + 1) * (p->height / step + 1) > SAMPLES) step++;
+  float *sorted = malloc((p->width / step + 1) * (p->height / step + 1) * sizeof *sorted);
   if (sorted == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", p->path);
   abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
-  for (size_t y = step / 2; y < image->height; y += step)
-    for (size_t x = step / 2; x < image->width; x += step) {
-      value_at(s, p, x, y, v);
+  for (size_t y = step / 2; y < p->height; y += step)
+    for (size_t x = step / 2; x < p->width; x += step) {
+      value_at(s, p, &from, x, y, v);
       if (colour) v[0] = matrix[3] * v[0] + matrix[4] * v[1] + matrix[5] * v[2];
       if (isfinite(v[0])) sorted[count++] = (float)v[0];
     }
@@ -114,11 +136,10 @@ static abbe_result mix_other(const abbe_inspect_picture *p, const abbe_inspect_p
   abbe_result result =
       abbe_image_check_place(&p->image, p->path, &other->image, other->path, error);
   if (result != ABBE_OK) return result;
-  if (p->image.width != other->image.width || p->image.height != other->image.height)
+  if (p->width != other->width || p->height != other->height)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s has %zu x %zu pixels, %s has %zu x %zu: there is no difference",
-                          p->path, p->image.width, p->image.height, other->path, other->image.width,
-                          other->image.height);
+                          p->path, p->width, p->height, other->path, other->width, other->height);
   const size_t theirs = counterpart(p, look->entry, other);
   if (theirs == other->count)
     return abbe_error_set(error, ABBE_NOT_FOUND, "%s: it has no '%s'", other->path,
@@ -159,13 +180,13 @@ abbe_result abbe_inspect_show(abbe_inspect *s, size_t at, const abbe_inspect_loo
 }
 
 /* The zoom at which the whole picture is seen. */
-static double whole_zoom(const abbe_image *image, size_t width, size_t height) {
+static double whole_zoom(const abbe_inspect_picture *image, size_t width, size_t height) {
   return fmin((double)width / (double)image->width, (double)height / (double)image->height);
 }
 
 void abbe_inspect_wheel(abbe_inspect *s, const size_t size[2], const double place[2],
                         double clicks) {
-  const abbe_image *image = &s->picture[s->at].image;
+  const abbe_inspect_picture *image = &s->picture[s->at];
   const double side = fmax((double)image->width, (double)image->height), before = s->zoom;
   const double least = fmin(fmin(1, 16 / side), whole_zoom(image, size[0], size[1]));
   s->zoom = fmin(MOST_ZOOM, fmax(least, before * pow(1.25, fmax(-20, fmin(20, clicks)))));
@@ -174,7 +195,7 @@ void abbe_inspect_wheel(abbe_inspect *s, const size_t size[2], const double plac
 }
 
 void abbe_inspect_fit(abbe_inspect *s, size_t width, size_t height) {
-  const abbe_image *image = &s->picture[s->at].image;
+  const abbe_inspect_picture *image = &s->picture[s->at];
   s->centre[0] = 0.5 * (double)image->width;
   s->centre[1] = 0.5 * (double)image->height;
   s->zoom = whole_zoom(image, width, height);
@@ -183,7 +204,7 @@ void abbe_inspect_fit(abbe_inspect *s, size_t width, size_t height) {
 
 bool abbe_inspect_pixel(const abbe_inspect *s, const size_t size[2], const double place[2],
                         size_t pixel[2]) {
-  const abbe_image *image = &s->picture[s->at].image;
+  const abbe_inspect_picture *image = &s->picture[s->at];
   const double most[2] = {(double)image->width, (double)image->height};
   for (int k = 0; k < 2; k++) {
     const double at = floor(s->centre[k] + (place[k] - 0.5 * (double)size[k]) / s->zoom);
@@ -196,13 +217,13 @@ bool abbe_inspect_pixel(const abbe_inspect *s, const size_t size[2], const doubl
 /* ---- tiles ---- */
 
 /* The mean of the image's pixels that a tile's pixel covers, of 4 x 4 at most. */
-static void cover(const abbe_inspect *s, const abbe_inspect_picture *p, size_t side, size_t x,
-                  size_t y, float out[3]) {
+static void cover(const abbe_inspect *s, const abbe_inspect_picture *p, const pair *from,
+                  size_t side, size_t x, size_t y, float out[3]) {
   const size_t step = side > 4 ? side / 4 : 1;
   double sum[3] = {0}, v[3], count = 0;
-  for (size_t j = y * side + step / 2; j < (y + 1) * side && j < p->image.height; j += step)
-    for (size_t i = x * side + step / 2; i < (x + 1) * side && i < p->image.width; i += step) {
-      value_at(s, p, i, j, v);
+  for (size_t j = y * side + step / 2; j < (y + 1) * side && j < p->height; j += step)
+    for (size_t i = x * side + step / 2; i < (x + 1) * side && i < p->width; i += step) {
+      value_at(s, p, from, i, j, v);
       for (int k = 0; k < 3; k++) sum[k] += v[k];
       count++;
     }
@@ -225,20 +246,24 @@ static abbe_result make_tile(const abbe_inspect *s, const abbe_inspect_picture *
   static const char *const names[] = {"R", "G", "B"};
   const double gain = exp2(s->look.exposure);
   const bool is_false = !is_colour(s) && (s->look.false_colours || s->look.difference);
+  const size_t first[2] = {at[0] * SIDE << l, at[1] * SIDE << l}, past = ((size_t)SIDE << l) - 1;
+  const size_t window[4] = {first[0], first[1], first[0] + past, first[1] + past};
   abbe_image image;
+  pair from;
+  ABBE_TRY(take_pair(s, p, l, window, &from, error));
   abbe_result result = abbe_image_make(SIDE, SIDE, 3, names, &image, error);
-  if (result != ABBE_OK) return result;
-  for (size_t y = 0; y < SIDE; y++)
+  for (size_t y = 0; y < SIDE && result == ABBE_OK; y++)
     for (size_t x = 0; x < SIDE; x++) {
       float *rgb = image.data + 3 * (y * SIDE + x);
       const size_t px = at[0] * SIDE + x, py = at[1] * SIDE + y;
-      if (px << l >= p->image.width || py << l >= p->image.height) continue;
-      cover(s, p, (size_t)1 << l, px, py, rgb);
+      if (px << l >= p->width || py << l >= p->height) continue;
+      cover(s, p, &from, (size_t)1 << l, px, py, rgb);
       if (is_false) colour_falsely(p, gain, rgb);
       for (int k = 0; k < 3 && !is_false; k++) rgb[k] = (float)(gain * (double)rgb[k]);
     }
-  if (!is_false) result = abbe_display_apply(s->look.display, &image, error);
-  for (size_t i = 0; i < SIDE * SIDE; i++) {
+  free_pair(&from);
+  if (result == ABBE_OK && !is_false) result = abbe_display_apply(s->look.display, &image, error);
+  for (size_t i = 0; i < SIDE * SIDE && result == ABBE_OK; i++) {
     for (size_t k = 0; k < 3; k++) out[4 * i + k] = byte_of((double)image.data[3 * i + k]);
     out[4 * i + 3] = 255;
   }
@@ -253,8 +278,8 @@ static size_t tiles_for(size_t pixels, size_t l) {
 static abbe_result begin_level(abbe_inspect_picture *p, size_t l, abbe_error *error) {
   abbe_inspect_level *level = &p->level[l];
   if (level->tile != NULL) return ABBE_OK;
-  level->across = tiles_for(p->image.width, l);
-  level->down = tiles_for(p->image.height, l);
+  level->across = tiles_for(p->width, l);
+  level->down = tiles_for(p->height, l);
   level->tile = calloc(level->across * level->down, sizeof *level->tile);
   if (level->tile != NULL) return ABBE_OK;
   return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its tiles", p->path);
@@ -302,7 +327,7 @@ static const unsigned char *find_pixel(const abbe_inspect_picture *p, size_t l, 
 /* The tiles of level l that a screen of that size shows; false: none. */
 static bool find_tiles(const abbe_inspect *s, const size_t screen[2], size_t l, size_t from[2],
                        size_t to[2]) {
-  const abbe_image *image = &s->picture[s->at].image;
+  const abbe_inspect_picture *image = &s->picture[s->at];
   const size_t pixels[2] = {image->width, image->height};
   for (int k = 0; k < 2; k++) {
     const double half = 0.5 * (double)screen[k] / s->zoom, most = (double)pixels[k];
@@ -334,8 +359,8 @@ abbe_result abbe_inspect_draw(abbe_inspect *s, size_t width, size_t height, doub
   *whole = true;
   if (result == ABBE_OK && find_tiles(s, screen, l, from, to))
     result = make_tiles(s, p, l, from, to, seconds, whole, error);
-  find_places(s->centre[0], s->zoom, width, p->image.width, place);
-  find_places(s->centre[1], s->zoom, height, p->image.height, place + width);
+  find_places(s->centre[0], s->zoom, width, p->width, place);
+  find_places(s->centre[1], s->zoom, height, p->height, place + width);
   for (size_t y = 0; y < height; y++)
     for (size_t x = 0; x < width; x++) {
       const size_t px = place[x], py = place[width + y];

@@ -4,6 +4,8 @@
 #include "cli/view/inspect/inspect.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/rgb_encoding.h"
+#include "colorimetry/screen/screen_file.h"
+#include "tests/colorimetry/image/exr_library.h"
 
 #include <unistd.h>
 
@@ -314,13 +316,125 @@ TEST(two_pictures_and_their_difference) {
   for (size_t k = 0; k < 3; k++) assert_near(out[4 + k], 255 * rgb[k], 1);
 }
 
+enum { LARGE_W = 300, LARGE_H = 200, TILE = 16 };
+
+/* A picture with levels of detail, of which no more than a coarse one may be in memory. */
+static void open_large(abbe_inspect *s, size_t numbers) {
+  const exr_library_file file = {.data_window = {0, 0, LARGE_W - 1, LARGE_H - 1},
+                                 .display_window = {0, 0, LARGE_W - 1, LARGE_H - 1},
+                                 .channels = 2,
+                                 .name = {"Y", "Z"},
+                                 .type = {2, 2},
+                                 .tile = {TILE, TILE},
+                                 .levels = true};
+  char why[200];
+  if (!exr_library_write(path, &file, why, sizeof why)) fail_msg("%s", why);
+  s->most_numbers = numbers;
+  OK(abbe_inspect_open(s, path, &error));
+}
+
+/* Levels hold the full picture's corner each, so that it shows which one was read. */
+TEST(of_a_large_picture_what_is_shown_is_read) {
+  static const size_t whole[4] = {0, 0, LARGE_W - 1, LARGE_H - 1};
+  OWNED(abbe_inspect, all) = {.count = 0};
+  OWNED(abbe_inspect, s) = {.count = 0};
+  open_large(&all, 0);
+  assert_int_equal(all.picture[0].coarse, 0);
+  open_large(&s, 2 * 80 * 50);
+  abbe_inspect_picture *p = &s.picture[0];
+  assert_int_equal(p->coarse, 2);
+  assert_true(p->width == LARGE_W && p->height == LARGE_H);
+  assert_true(p->image.width == LARGE_W / 4 && p->image.height == LARGE_H / 4);
+  const abbe_image *full = &all.picture[0].image;
+  for (size_t y = 0; y < LARGE_H / 4; y++)
+    for (size_t x = 0; x < 2 * (LARGE_W / 4); x++)
+      assert_near(p->image.data[y * 2 * (LARGE_W / 4) + x], full->data[y * 2 * LARGE_W + x], 0);
+  show(&s, 0, "Z", (abbe_inspect_look){.exposure = -5});
+  show(&all, 0, "Z", (abbe_inspect_look){.exposure = -5});
+  /* pixel by pixel it is the same picture, also at the edge, and so are a pixel and a region */
+  static unsigned char out[2][4 * LARGE_W * LARGE_H];
+  draw(&s, LARGE_W, LARGE_H, 1, out[0]);
+  draw(&all, LARGE_W, LARGE_H, 1, out[1]);
+  assert_memory_equal(out[0], out[1], sizeof out[0]);
+  FILLED(abbe_inspect_probe, one, probe(&s, (const size_t[4]){299, 7, 299, 7}, &one));
+  assert_near(one.mean[1], full->data[2 * (7 * LARGE_W + 299) + 1], 1e-6);
+  assert_int_equal(one.side, 1);
+  FILLED(abbe_inspect_probe, part, probe(&s, (const size_t[4]){90, 70, 120, 99}, &part));
+  FILLED(abbe_inspect_probe, same, probe(&all, (const size_t[4]){90, 70, 120, 99}, &same));
+  assert_near(part.mean[0], same.mean[0], 1e-9);
+  assert_int_equal(part.pixels, same.pixels);
+  /* all of it is more than may be in memory: means of 4 x 4 */
+  FILLED(abbe_inspect_probe, means, probe(&s, whole, &means));
+  assert_int_equal(means.side, 4);
+  assert_int_equal(means.pixels, LARGE_W / 4 * (LARGE_H / 4));
+}
+
+/* All tiles of the finest level, which come first, are made unreadable. */
+TEST(a_large_picture_is_opened_without_its_finest_tiles) {
+  OWNED(abbe_inspect, s) = {.count = 0};
+  static unsigned char out[4 * LARGE_W * LARGE_H];
+  bool whole = false;
+  open_large(&s, 2 * 80 * 50);
+  abbe_inspect_free(&s);
+  FILE *file = fopen(path, "r+b");
+  const size_t most = LARGE_W * LARGE_H * 2 * sizeof(float);
+  FREED unsigned char *junk = calloc(most, 1);
+  assert_int_equal(fseek(file, 0, SEEK_END), 0);
+  const long size = ftell(file);
+  assert_true((size_t)size > most);
+  /* codec 0 packs nothing: the coarser levels are a third of it, behind */
+  const long coarser = (150 * 100 + 75 * 50 + 37 * 25 + 18 * 12 + 9 * 6 + 4 * 3 + 2 + 1) * 8;
+  assert_int_equal(fseek(file, size - coarser - 4096 - (long)most / 2, SEEK_SET), 0);
+  memset(junk, 0xff, most);
+  assert_int_equal(fwrite(junk, 1, most / 4, file), most / 4);
+  fclose(file);
+  abbe_image image;
+  assert_int_not_equal(abbe_exr_read(path, &image, NULL), ABBE_OK);
+  s.most_numbers = 2 * 80 * 50;
+  OK(abbe_inspect_open(&s, path, &error));
+  show(&s, 0, "Z", (abbe_inspect_look){0});
+  draw(&s, LARGE_W / 4, LARGE_H / 4, 0.25, out);
+  s.zoom = 1;
+  REFUSED(ABBE_PARSE, path, abbe_inspect_draw(&s, LARGE_W, LARGE_H, 9, out, &whole, &error));
+}
+
+/* A grey of the white of graphics, 203 cd/m2 [BT2408], is 0.58 in PQ and 0.75 in HLG; half of
+ * Display P3's light stays half. */
+TEST(an_avif_is_the_light_that_it_encodes) {
+  static const char *const names[] = {"R", "G", "B"};
+  static const double rec2020[8] = {0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290};
+  static const struct {
+    int transfer;
+    float value;
+    double light;
+  } cases[] = {{16, 0.5806F, 1}, {18, 0.75F, 1}, {0, 0.7354F, 0.5}};
+  static const char avif[] = "view_inspect.avif";
+  for (size_t i = 0; i < 3; i++) {
+    MADE(abbe_image, image, abbe_image_make(16, 16, 3, names, &image, &error));
+    if (cases[i].transfer == 0) abbe_rgb_encoding_display_p3(image.xy, image.curve);
+    if (cases[i].transfer != 0) memcpy(image.xy, rec2020, sizeof rec2020);
+    image.transfer = cases[i].transfer;
+    for (size_t k = 0; k < 3 * 256; k++) image.data[k] = cases[i].value;
+    const abbe_result written = abbe_screen_file_write(avif, &image, 12, NULL);
+    if (written == ABBE_UNSUPPORTED) return; /* a build without libavif */
+    OWNED(abbe_inspect, s) = {.count = 0};
+    OK(abbe_inspect_open(&s, avif, &error));
+    unlink(avif);
+    show(&s, 0, "colour", (abbe_inspect_look){0});
+    FILLED(abbe_inspect_probe, p, probe(&s, (const size_t[4]){8, 8, 8, 8}, &p));
+    assert_near(p.xyz[1], cases[i].light, 0.01);
+    assert_near(p.xy[0], 0.3127, 1e-3);
+    assert_false(s.picture[0].space.assumed);
+  }
+}
+
 TEST(what_cannot_be_read_is_said_as_by_its_reader) {
   OWNED(abbe_inspect, s) = {.count = 0};
   static const char *const twice[] = {"S0.500,0nm", "S0.500nm"};
   MADE(abbe_image, image, abbe_image_make(1, 1, 2, twice, &image, &error));
   OK(abbe_exr_write(path, &image, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "are of one wavelength", abbe_inspect_open(&s, path, &error));
-  REFUSED(ABBE_UNSUPPORTED, ".exr, .hdr, .pic and .png",
+  REFUSED(ABBE_UNSUPPORTED, ".exr, .hdr, .pic, .png and .avif",
           abbe_inspect_open(&s, "picture.jxl", &error));
   REFUSED(ABBE_IO, "absent.png", abbe_inspect_open(&s, "absent.png", &error));
   assert_int_equal(truncate(path, 100), 0);

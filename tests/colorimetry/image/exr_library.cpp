@@ -1,6 +1,7 @@
 #include "tests/colorimetry/image/exr_library.h"
 
 #include <ImfChannelList.h>
+#include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputPart.h>
@@ -111,6 +112,8 @@ struct content {
       header.setType(f.tile[0] > 0 ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
     }
     for (int c = 0; c < f.channels; c++) {
+      if (f.metres[c] != 0)
+        header.insert(std::string(f.name[c]) + ".wavelength", Imf::FloatAttribute(f.metres[c]));
       const int sampling = f.sampling > 1 && c == f.channels - 1 ? f.sampling : 1;
       header.channels().insert(
           f.name[c], Imf::Channel(Imf::PixelType(f.type[c]), sampling, sampling, c % 2 == 1));

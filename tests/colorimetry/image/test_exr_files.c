@@ -217,6 +217,28 @@ TEST(parts) {
   unlink(name);
 }
 
+/* The layout of Ocean: channels of any name, whose light an attribute says in metres. */
+TEST(wavelengths_as_attributes) {
+  exr_library_file f = {.channels = 3,
+                        .type = {1, 2, 2},
+                        .name = {"Y", "wl0", "wl1"},
+                        .metres = {0, 5.5e-7F, 4.005e-7F}};
+  char why[300];
+  if (!exr_library_write(path, &f, why, sizeof why)) fail_msg("%s", why);
+  MADE(abbe_image, image, abbe_exr_read(path, &image, &error));
+  assert_string_equal(image.channel[0], "Y");
+  assert_string_equal(image.channel[1], "S0.550,000000nm");
+  assert_string_equal(image.channel[2], "S0.400,500000nm");
+  static const float none[] = {NAN, -5.5e-7F, 550, INFINITY};
+  for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
+    abbe_image broken;
+    f.metres[2] = none[i];
+    if (!exr_library_write(path, &f, why, sizeof why)) fail_msg("%s", why);
+    REFUSED(ABBE_PARSE, "its attribute wl1.wavelength is no wavelength",
+            abbe_exr_read(path, &broken, &error));
+  }
+}
+
 /* Each part has a codec of its own. */
 TEST(a_codec_of_one_part) {
   static const char key[] = "compression\0compression\0\1\0\0"; /* and the size's last byte */

@@ -1,7 +1,7 @@
 #include "tests/check.h"
 
 #include "base/file.h"
-#include "colorimetry/image/radiance_file.h"
+#include "colorimetry/image/picture_file.h"
 #include "colorimetry/rgb_space.h"
 
 #include <sys/stat.h>

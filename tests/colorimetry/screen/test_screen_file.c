@@ -267,7 +267,28 @@ TEST(files_hold_pixels_and_their_colour) {
     assert_int_equal(read->icc.size, 0);
     check_pixels(&image, pixel, of[i].bits);
     avifImageDestroy(read);
+    MADE(abbe_image, own, abbe_avif_read(path, &own, &error));
+    assert_int_equal(own.transfer, of[i].transfer);
+    for (int k = 0; k < 8; k++) assert_near(own.xy[k], of[i].xy[k], 1e-9);
+    for (int k = 0; k < 5; k++) assert_near(own.curve[k], image.curve[k], 1e-9);
+    const double top = (1 << of[i].bits) - 1; /* pixel is rounded to the file's bits */
+    for (size_t k = 0; k < W * H * 3; k++)
+      assert_near(own.data[k], (double)pixel[k] / top, 0.501 / top);
   }
+}
+
+/* Bytes cut off, bytes that are none. */
+TEST(broken_files_are_said) {
+  FILLED(abbe_image, image, paint(&image));
+  abbe_image none;
+  abbe_rgb_encoding_srgb(image.xy, image.curve);
+  OK(abbe_screen_file_write(name("a.avif"), &image, 10, &error));
+  assert_int_equal(truncate(path, 200), 0);
+  REFUSED(ABBE_PARSE, "a.avif: it cannot be read as AVIF", abbe_avif_read(path, &none, &error));
+  OK(abbe_png_write(path, &image, 8, &error));
+  REFUSED(ABBE_PARSE, "a.avif: it cannot be read as AVIF", abbe_avif_read(path, &none, &error));
+  REFUSED(ABBE_IO, "", abbe_avif_read("/no/such.avif", &none, &error));
+  assert_null(none.data);
 }
 
 /* A power of 2.4 has no code that decoders agree on: a profile says it. */
@@ -287,6 +308,11 @@ TEST(other_encodings_have_a_profile) {
   assert_memory_equal(read->icc.data, icc, size);
   check_pixels(&image, pixel, 10);
   avifImageDestroy(read);
+  /* read, it is sRGB */
+  MADE(abbe_image, own, abbe_avif_read(path, &own, &error));
+  assert_true(abbe_rgb_encoding_is_srgb(own.xy, own.curve));
+  const double light = pow((double)pixel[0] / 1023, 2.4);
+  assert_near(own.data[0], abbe_srgb_encoded(light), 2e-3);
 }
 
 TEST(what_cannot_be_written_is_said) {
