@@ -1,5 +1,5 @@
 /* What glows: its photons by those that it takes, slabs that absorb none and some of their own glow
- * from both sides, and a ball in light from all around. All have the index of the air. */
+ * from both sides, cubes, and a ball in light from all around. All have the index of the air. */
 #include "base/number.h"
 #include "colorimetry/observer.h"
 #include "validation/lab/known/known_light.h"
@@ -80,15 +80,15 @@ static abbe_result add(abbe_known_run *run, abbe_known_setting row, const glowin
 
 /* ---- slabs ---- */
 
-/* Light of 1 W/m2 comes down at 30 degrees. What is seen straight on of a depth x comes through the
+/* Light of 1 W/m2 comes down at that angle. What is seen straight on of a depth x comes through the
  * rest of the slab. */
-static double slab_radiance(const glowing *g, double thickness, bool below) {
+static double slab_radiance(const glowing *g, double thickness, double angle, bool below) {
   enum { PARTS = 20000 };
   double sum = 0, passes;
   for (int i = 0; i < PARTS; i++) {
     const double depth = (i + 0.5) / PARTS * thickness, out = below ? thickness - depth : depth;
     sum += g->excitation * thickness / PARTS *
-           exp(-g->excitation * depth / cos(30 / ABBE_KNOWN_DEGREES) - g->absorption * out);
+           exp(-g->excitation * depth / cos(angle) - g->absorption * out);
   }
   return sum * seen(true, &passes) / (4 * ABBE_PI);
 }
@@ -102,7 +102,7 @@ static abbe_result add_slab(abbe_known_run *run, double excitation, double absor
   abbe_known_setting row = {
       .what = what, .unit = "W/(m2 sr)", .reason = reason, .samples = 1 << 18, .channel = "Y"};
   abbe_result result = make(&g, excitation, absorption, error);
-  row.exact = slab_radiance(&g, thickness, below);
+  row.exact = slab_radiance(&g, thickness, angle, below);
   row.slack = 3e-3 * row.exact;
   row.useful = 3e-2 * row.exact;
   abbe_number_format(what, sizeof what,
@@ -119,6 +119,38 @@ static abbe_result add_slab(abbe_known_run *run, double excitation, double absor
         "- {name: far off, shape: rectangle, width: 0.004, height: 0.004, reflectance: 0,\n"
         "   transform: [{translate: [0, 0, %.17g]}]}\n",
         below ? -1.0 : 1.0, sin(angle), -cos(angle), thickness, below ? 1.2 : -1.2);
+  result = add(run, row, &g, result, &scene, from, error);
+  drop(&g);
+  return result;
+}
+
+/* A cube in light straight from above, whose face fills the picture: gathers of photons are cut by
+ * its walls. */
+static abbe_result add_cube(abbe_known_run *run, double excitation, double from,
+                            abbe_error *error) {
+  const double size = 0.04, away = 20, seen_half = 0.49 * size;
+  char what[112];
+  abbe_scene scene = {0};
+  glowing g = {0};
+  abbe_known_setting row = {
+      .what = what, .unit = "W/(m2 sr)", .reason = reason, .samples = 1 << 18, .channel = "Y"};
+  abbe_result result = make(&g, excitation, 0, error);
+  row.exact = slab_radiance(&g, size, 0, false);
+  row.slack = 3e-3 * row.exact;
+  row.useful = 3e-2 * row.exact;
+  abbe_number_format(what, sizeof what, "a cube of depth %.3g that glows, all of its face",
+                     excitation * size);
+  if (result == ABBE_OK)
+    result = abbe_known_scene(
+        &scene, error,
+        "camera: {eye: [0, 0, %.17g], target: [0, 0, 0], up: [0, 1, 0], fov: %.17g}\n"
+        "lights: [{name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1,\n"
+        "          illuminant: 450nm}]\n"
+        "objects:\n"
+        "- {name: cube, shape: box, size: [%.17g, %.17g, %.17g], material: n-bk7}\n"
+        "- {name: far off, shape: rectangle, width: 0.004, height: 0.004, reflectance: 0,\n"
+        "   transform: [{translate: [0, 0, -1]}]}\n",
+        away, 2 * atan(seen_half / (away - size / 2)) * ABBE_KNOWN_DEGREES, size, size, size);
   result = add(run, row, &g, result, &scene, from, error);
   drop(&g);
   return result;
@@ -196,6 +228,8 @@ abbe_result abbe_known_fluorescent(abbe_known_run *run, abbe_error *error) {
   ABBE_TRY(add_slab(run, 2, 0, false, 0.28, error));
   ABBE_TRY(add_slab(run, 200, 150, false, 0.42, error));
   ABBE_TRY(add_slab(run, 200, 150, true, 0.56, error));
-  ABBE_TRY(add_ball(run, 0.5, "Y", 0.7, error));
+  ABBE_TRY(add_cube(run, 0.5, 0.64, error));
+  ABBE_TRY(add_cube(run, 100, 0.72, error));
+  ABBE_TRY(add_ball(run, 0.5, "Y", 0.78, error));
   return add_ball(run, 10, "Y", 0.85, error);
 }

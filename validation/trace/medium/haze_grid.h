@@ -2,9 +2,9 @@
  *
  * A grid of cubes over the box that holds them. A gather takes what was scattered within a radius
  * of the ray: the estimate is the power there over the disk's area, which leaves a bias that goes
- * with the squared radius and the curvature of the light across the ray, and less than the whole
- * within a radius of the medium's edge; both vanish as the radius shrinks from pass to pass
- * [Jarosz2008], [KnausZwicker2011].
+ * with the squared radius and the curvature of the light across the ray, and of what scatters less
+ * than the whole within a radius of the medium's edge (what glows there: shaft_photons.h); both
+ * vanish as the radius shrinks from pass to pass [Jarosz2008], [KnausZwicker2011].
  *
  * Internal to validation/.
  */

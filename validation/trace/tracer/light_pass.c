@@ -241,6 +241,7 @@ static abbe_shaft_photons *watch_shafts(const abbe_emission *e, sink *s) {
   shafts->camera = &t->camera;
   shafts->eye_medium = abbe_media_of(t->eye.inside);
   shafts->near = t->eye.shaft_near;
+  shafts->radius = t->eye.shaft_radius;
   shafts->pass = e->pass;
   shafts->seed = t->desc.seed;
   shafts->colour = (uint32_t)colour_of(t, e->light, false, 0);

@@ -76,6 +76,77 @@ static void keep(abbe_shaft_photons *s, const abbe_light_stretch *from, const fl
   memcpy(to->d, from->d, sizeof to->d);
 }
 
+/* ---- near faces ---- */
+
+enum { PROBES = 14, FACES = 3 };
+
+/* A face near a place: its normal, outwards, and how far away its plane is, frame. */
+typedef struct near_face {
+  float n[3], distance;
+} near_face;
+
+static float dot(const float a[3], const float b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The face that the medium ends at along unit d, within the limit; d may be out->n. */
+static bool look(const abbe_shaft_photons *s, int medium, const float p[3], const float d[3],
+                 float limit, near_face *out) {
+  abbe_hit hit;
+  float way[3];
+  if (!abbe_geometry_hit(s->geometry, ABBE_GEOMETRY_REFRACTORS, p, d, limit, &hit) ||
+      hit.surface->index != (uint32_t)medium)
+    return false;
+  const float side = dot(d, hit.ng) < 0 ? -1 : 1;
+  for (int k = 0; k < 3; k++) {
+    way[k] = hit.p[k] - p[k];
+    out->n[k] = side * hit.ng[k];
+  }
+  out->distance = dot(way, out->n);
+  return true;
+}
+
+/* Faces within the radius, of those that lean to each other by less than 45 degrees the nearest. */
+static int find_faces(const abbe_shaft_photons *s, int medium, const float p[3],
+                      near_face out[FACES]) {
+  const float third = 0.577350269f;
+  int count = 0;
+  for (int i = 0; i < PROBES; i++) {
+    float d[3] = {0};
+    if (i < 6) d[i / 2] = i % 2 ? 1 : -1;
+    for (int k = 0; i >= 6 && k < 3; k++) d[k] = (i - 6) >> k & 1 ? third : -third;
+    near_face f;
+    int at = 0;
+    /* no direction is more than 37 degrees from a probe's */
+    if (!look(s, medium, p, d, 1.26f * s->radius, &f) || !look(s, medium, p, f.n, s->radius, &f))
+      continue;
+    while (at < count && dot(out[at].n, f.n) < 0.7f) at++;
+    if (at < FACES && (at == count || f.distance < out[at].distance)) out[at] = f;
+    if (at == count && at < FACES) count++;
+  }
+  return count;
+}
+
+/* Mirrored at a face, and at two or three that stand at right angles, about. */
+static void keep_mirrored(abbe_shaft_photons *s, const abbe_light_stretch *from, const float p[3],
+                          float glow) {
+  near_face face[FACES];
+  const int count = find_faces(s, from->medium, p, face);
+  for (int set = 1; set < 1 << count; set++) {
+    float q[3] = {p[0], p[1], p[2]}, square = 0;
+    bool right = true;
+    for (int i = 0; i < count; i++) {
+      if (!(set >> i & 1)) continue;
+      for (int j = 0; j < i; j++) right &= !(set >> j & 1) || dot(face[i].n, face[j].n) < 0.3f;
+      float way[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+      const float beyond = 2 * (face[i].distance - dot(way, face[i].n));
+      for (int k = 0; k < 3; k++) q[k] += beyond * face[i].n[k];
+      square += face[i].distance * face[i].distance;
+    }
+    if (right && square < s->radius * s->radius) keep(s, from, q, 0, glow);
+  }
+}
+
 void abbe_shaft_photons_take(void *user, const abbe_light_stretch *from) {
   abbe_shaft_photons *s = user;
   const abbe_haze *h = &s->media->haze;
@@ -97,6 +168,7 @@ void abbe_shaft_photons_take(void *user, const abbe_light_stretch *from) {
   for (int k = 0; k < 3; k++) p[k] = from->o[k] + (near + t) * from->d[k];
   splat(s, from, p, flux);
   keep(s, from, p, flux, glow);
+  if (glow > 0) keep_mirrored(s, from, p, glow);
 }
 
 void abbe_shaft_photons_free(abbe_shaft_photons *s) {

@@ -8,6 +8,10 @@
  * find all light but that of lights without size at its first turn, where its first interface was
  * not a rough face.
  *
+ * What a refractor absorbs to glow near its faces is kept once more behind each of them, as mirrors
+ * show it: a gather that a face cuts finds as much as one inside. Glow that is even is so up to
+ * flat faces and right-angled edges.
+ *
  * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRACE_TRACER_SHAFT_PHOTONS_H
@@ -37,6 +41,7 @@ typedef struct abbe_shaft_photons {
   const abbe_trace_camera *camera;
   int eye_medium; /* refractor that the camera is in, or -1 */
   float near;     /* frame: no nearer to the camera are places splatted */
+  float radius;   /* frame: of the pass's gathers */
   uint32_t pass, seed;
   uint32_t colour, glow; /* colour of the light's first step, and of its glow's */
   bool found;            /* paths of the camera meet the light by themselves: it has a size */

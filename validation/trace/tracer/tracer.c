@@ -370,10 +370,9 @@ static double shrunk_by(size_t pass) {
 }
 
 /* Photons that haze scattered in this pass. */
-static abbe_result fill_shafts(abbe_tracer *t, double factor, abbe_error *error) {
+static abbe_result fill_shafts(abbe_tracer *t, abbe_error *error) {
   t->eye.shafts = NULL;
   if (!abbe_haze_is(&t->media.haze)) return ABBE_OK;
-  t->eye.shaft_radius = (float)((double)t->shaft_radius * factor);
   t->eye.shafts = &t->shafts;
   return abbe_haze_grid_fill(&t->shafts, t->shaft, t->shaft_count, t->eye.shaft_radius, error);
 }
@@ -389,7 +388,7 @@ static abbe_result eye_pass(abbe_tracer *t, size_t landed, const volatile int *s
         abbe_photon_grid_fill(&t->grid, t->landed, landed, t->eye.radius, t->desc.threads, error);
     if (result != ABBE_OK) return result;
     t->eye.grid = &t->grid;
-    result = fill_shafts(t, factor, error);
+    result = fill_shafts(t, error);
     if (result != ABBE_OK) return result;
   }
   uint64_t rays = 0;
@@ -456,6 +455,7 @@ abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_erro
   abbe_trace_statistics before = t->statistics;
   size_t landed = 0;
   double start = abbe_clock_seconds();
+  t->eye.shaft_radius = (float)((double)t->shaft_radius * shrunk_by(t->pass));
   abbe_result result = abbe_tracer_light_pass(t, stop, &landed, error);
   double middle = abbe_clock_seconds();
   if (result == ABBE_OK && !t->desc.no_picture) result = eye_pass(t, landed, stop, error);
