@@ -72,7 +72,7 @@ vec3 seen_outside(vec3 p, vec3 d, Spread spread) {
 
 #ifdef CRYSTALS
 int wave;             // that is followed
-float wave_share;  // what of unpolarised light has become it
+float wave_share, wave_mirrored;  // what of unpolarised light has become it, and what the first face mirrors of that
 #endif
 
 // XYZ of what the band that is taken shows, from interface to interface. What is left when the path ends shows what
@@ -90,7 +90,7 @@ vec3 through(Hit front, vec3 d) {
   float per_m = spectrum.y, least_per_m = per_m;
 #endif
 #ifdef CRYSTALS
-  InnerRay ray = enter_crystal(refractor, wave, front.p, front.n, front.facet, d);
+  InnerRay ray = enter_crystal(refractor, wave, front.p, front.n, front.facet, d, wave_mirrored);
   wave_share = ray.share;
   n = length(ray.k);
 #else

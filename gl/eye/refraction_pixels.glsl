@@ -3,10 +3,9 @@
 // XYZ of what a band shows through the first interface; the share that is mirrored there.
 vec3 band_light(int band, out float mirrored) {
   take_band(band_set, band - first_band(refractor));
-  mirrored = face_shares(refractor, front.facet, true, -dot(sight, front.n), bands[band].weight_n.w).x;
 #ifdef CRYSTALS
   vec3 light = vec3(0);
-  float passed = 0.0;
+  float passed = 0.0, reflected = 0.0;
   crystal = crystal_of(refractor);
   for (wave = 0; wave < 2; wave++) {
 #ifdef KEEPS_SIGHTS
@@ -14,17 +13,20 @@ vec3 band_light(int band, out float mirrored) {
 #endif
     light += through(front, sight);
     passed += wave_share;
+    reflected += wave_mirrored;
 #ifdef KEEPS_SIGHTS
     weigh_sights(before, sight_tail);
     sight_tail = vec3(1);
 #endif
   }
 #ifdef FILMS
-  if (film_on(refractor, front.facet) != BARE) return light;
-#endif
+  mirrored = reflected;
+#else
   mirrored = 1.0 - passed;
+#endif
   return light;
 #else
+  mirrored = face_shares(refractor, front.facet, true, -dot(sight, front.n), bands[band].weight_n.w).x;
   return through(front, sight);
 #endif
 }

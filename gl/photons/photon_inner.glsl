@@ -179,27 +179,29 @@ void trace(PhotonRay photon, out Shares entry[5]) {
 #ifdef FILMS
   film_row = photon.wavelength;
 #endif
-  vec2 shares = face_shares(r, front.facet, true, -dot(photon.d, front.n), n);
   uint path = uint(r) * 131u + uint(front.facet);
   entry[REACHED] = Shares(1.0);
-#ifdef FILMS
-  entry[ABSORBED] = Shares(1.0 - shares.x - shares.y);
-#endif
 #ifdef CRYSTALS
   crystal_node = photon.wavelength;
   crystal = crystal_of(r);
-  float passed = 0.0;
+  float passed = 0.0, reflected = 0.0, mirrored;
   for (int wave = 0; wave < 2; wave++) {
-    InnerRay ray = enter_crystal(r, wave, front.p, front.n, front.facet, photon.d);
+    InnerRay ray = enter_crystal(r, wave, front.p, front.n, front.facet, photon.d, mirrored);
     passed += ray.share;
+    reflected += mirrored;
     if (ray.share > 0.0) follow(photon, r, n, per_m, ray, path + 977u * uint(wave), wave * counts.exits, entry);
   }
 #ifdef FILMS
-  if (film_on(r, front.facet) == BARE)
-#endif
-    shares.x = 1.0 - passed;
-  entry[REFLECTED] = Shares(mirror(photon, path, shares.x));
+  entry[ABSORBED] += Shares(max(1.0 - passed - reflected, 0.0));
 #else
+  reflected = 1.0 - passed;
+#endif
+  entry[REFLECTED] = Shares(mirror(photon, path, reflected));
+#else
+  vec2 shares = face_shares(r, front.facet, true, -dot(photon.d, front.n), n);
+#ifdef FILMS
+  entry[ABSORBED] = Shares(1.0 - shares.x - shares.y);
+#endif
   entry[REFLECTED] = Shares(mirror(photon, path, shares.x));
   InnerRay ray = InnerRay(front.p, photon.d, front.facet, shares.y);
   if (refract_direction(photon.d, front.n, 1.0 / n, ray.d)) follow(photon, r, n, per_m, ray, path, 0, entry);

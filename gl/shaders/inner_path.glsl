@@ -53,16 +53,21 @@ vec2 face_shares(int r, int facet, bool outside, float cos_i, float n) {
 #ifdef CRYSTALS
 Crystal crystal;  // that is followed
 
-// Into refractor r, as one of its waves; its part of unpolarised light. Share 0: it does not enter.
-InnerRay enter_crystal(int r, int wave, vec3 p, vec3 n, int facet, vec3 d) {
+// Into refractor r, as one of its waves; its part of unpolarised light, and what it mirrors of that. Share 0: it does
+// not enter.
+InnerRay enter_crystal(int r, int wave, vec3 p, vec3 n, int facet, vec3 d, out float mirrored) {
   InnerRay ray = InnerRay(p, d, facet, 0.0, wave, 0, d);
   bool enters = wave_from(crystal, wave, d - dot(d, n) * n, -n, ray.k, ray.d);
   vec2 field = field_parts(crystal, wave, ray.k, n);
   vec3 reflects = face_reflects(-dot(d, n), 1.0, length(ray.k));
-  ray.share = enters ? 0.5 * (1.0 - dot(reflects.xy, field * field)) : 0.0;
+  vec2 shares = vec2(0.0, 1.0 - dot(reflects.xy, field * field));
+  shares.x = 1.0 - shares.y;
 #ifdef FILMS
-  if (film_on(r, facet) != BARE) ray.share = enters ? 0.5 * face_shares(r, facet, true, -dot(d, n), length(ray.k)).y : 0.0;
+  int film = film_on(r, facet);
+  if (film != BARE) shares = wave_film_shares(crystal, r, film, true, -dot(d, n), length(ray.k));
 #endif
+  ray.share = enters ? 0.5 * shares.y : 0.0;
+  mirrored = enters ? 0.5 * shares.x : 0.5;
   return ray;
 }
 
@@ -72,8 +77,9 @@ Outgoing leave(int r, InnerHit h, float n, inout InnerRay ray) {
   vec2 field = field_parts(crystal, ray.wave, ray.k, h.n);
   float reflected = dot(reflects.xy, field * field), passed = 1.0 - reflected, out2 = 1.0 - dot(along, along);
 #ifdef FILMS
-  if (film_on(r, h.facet) != BARE) {
-    vec2 shares = face_shares(r, h.facet, false, cos_i, size);
+  int film = film_on(r, h.facet);
+  if (film != BARE) {
+    vec2 shares = wave_film_shares(crystal, r, film, false, cos_i, size);
     reflected = shares.x;
     passed = shares.y;
     reflects = vec3(reflected);

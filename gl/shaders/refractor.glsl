@@ -151,11 +151,4 @@ vec2 film_shares(int film, bool outside, float cos_i, float n) {
   vec4 shares = mix(texelFetch(film_texels, texel), texelFetch(film_texels, texel + 1), x - float(at));
   return vec2(outside ? shares.x : shares.y, shares.z);
 }
-
-// The share that it reflects, and the one that it absorbs; passes: not all is reflected by Snell's law.
-float film_reflects(int film, bool outside, float cos_i, float n, bool passes, out float absorbed) {
-  vec2 shares = film_shares(film, outside, cos_i, n);
-  absorbed = max(1.0 - shares.x - (passes ? shares.y : 0.0), 0.0);
-  return shares.x;
-}
 #endif

@@ -40,8 +40,8 @@ struct PathState {
   Depth depth;  // depth of each part
 #endif
 #ifdef CRYSTALS
-  int wave;  // within a crystal, or what it enters one as (crystals.glsl); and its vector
-  vec3 k;
+  int wave;  // within a crystal, or what it enters one as (crystals.glsl); and its vector. Above 1: it has left
+  vec3 k;    // one, and k has the way of its field
 #endif
 };
 
@@ -328,23 +328,29 @@ bool split(inout PathState w, Interface h, out PathState mirrored, out float abs
   if (dot(w.d, n) >= 0.0) n = face_n;
   float reflected = fresnel(-dot(w.d, n), eta);
   vec3 through;
-  bool passes = refract_direction(w.d, n, eta, through), bare = true;
+  bool passes = refract_direction(w.d, n, eta, through), bare = true, bends = false;
   if (!passes) reflected = 1.0;
 #ifdef FILMS
   // Tables have films between their refractor and air.
-  bare = h.film == BARE || (mirrored.inside | after) != 1u << r;
-  if (!bare) reflected = film_reflects(h.film, entering, -dot(w.d, n), entering ? 1.0 / eta : eta, passes, absorbed);
-  absorbed *= w.share;
+  if ((mirrored.inside | after) != 1u << r) h.film = BARE;
+  bare = h.film == BARE;
 #endif
 #ifdef KEEPS_SPREAD
   mat3 bend = entering ? h.bend : -h.bend;
   mirrored.spread = spread_mirrored(w.spread, w.d, n, bend);
   w.spread = spread_refracted(w.spread, w.d, n, bend, eta);
 #endif
-  bool bends = false;
 #ifdef CRYSTALS
-  bends = split_waves(after, n, bare, w, mirrored, through, reflected, passes);
+  bends = split_waves(after, n, h, w, mirrored, through, reflected, absorbed, passes);
 #endif
+#ifdef FILMS
+  if (!bends && !bare) {
+    vec2 shares = film_shares(h.film, entering, -dot(w.d, n), entering ? 1.0 / eta : eta);
+    reflected = shares.x;
+    absorbed = max(1.0 - shares.x - (passes ? shares.y : 0.0), 0.0);
+  }
+#endif
+  absorbed *= w.share;
   mirrored.d = keep_side(face_n, bends ? mirrored.d : reflect(w.d, n));
   w.d = keep_side(-face_n, through);
   mirrored.share *= reflected;

@@ -70,9 +70,11 @@ const abbe_coatings *abbe_film_tables_of(const abbe_scene *scene, const abbe_pla
                                          uint32_t *first);
 size_t abbe_film_tables_texels(const abbe_scene *scene, const abbe_plan *plan);
 /* texel: of each refractor, the number of the film on all of it, -1: it is bare, -2: its planes
- * have their own; then that of each plane; then of each film, first of all wavelengths, then of all
- * bands of all sets, 2 ABBE_FILM_ANGLES + 1 each: what is reflected from outside
- * and from inside, and what passes. Errors of abbe_coating_at. */
+ * have their own; of a crystal, by how much more films are numbered that stand on another of its
+ * indices than the ordinary or middle one, and along which axis it is; then that of each plane;
+ * then of each film, first of all wavelengths, then of all bands of all sets, 2 ABBE_FILM_ANGLES +
+ * 1 each: what is reflected from outside and from inside, and what passes. Errors of
+ * abbe_coating_at. */
 abbe_result abbe_film_tables_fill(const abbe_scene *scene, const abbe_plan *plan,
                                   const abbe_spectral_tables *tables, float (*texel)[4],
                                   abbe_error *error);

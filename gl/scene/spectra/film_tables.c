@@ -26,6 +26,19 @@ const abbe_coatings *abbe_film_tables_of(const abbe_scene *scene, const abbe_pla
   return r < plan->refractor_count ? scene->object[plan->refractor_object[r]].coatings : NULL;
 }
 
+/* Films of crystals have tables for two of the indices. */
+static bool is_crystal(const abbe_scene *scene, const abbe_plan *plan, size_t r) {
+  const abbe_material *m = scene->object[plan->refractor_object[r]].material;
+  return plan->crystals && m != NULL && abbe_material_is_crystal(m);
+}
+
+/* Of the outer indices the one that is farther from that of glass's tables. */
+static int other_axis(const abbe_material *material, double lambda_nm) {
+  double n[3] = {0};
+  for (int k = 0; k < 3; k++) abbe_material_n_along(material, k, lambda_nm, &n[k], NULL);
+  return fabs(n[0] - n[1]) > fabs(n[2] - n[1]) ? 0 : 2;
+}
+
 static size_t plane_count(const abbe_scene *scene, const abbe_plan *plan) {
   size_t count = 0;
   for (size_t r = 0; r < plan->refractor_count; r++)
@@ -44,6 +57,11 @@ size_t abbe_film_tables_texels(const abbe_scene *scene, const abbe_plan *plan) {
   uint32_t films;
   size_t bands;
   abbe_film_tables_of(scene, plan, plan->refractor_count, &films);
+  for (size_t r = 0; r < plan->refractor_count; r++) {
+    uint32_t first;
+    const abbe_coatings *c = abbe_film_tables_of(scene, plan, r, &first);
+    if (c != NULL && is_crystal(scene, plan, r)) films += (uint32_t)c->count;
+  }
   return plan->refractor_count + plane_count(scene, plan) +
          films * row_count(plan, &bands) * ANGLES;
 }
@@ -51,6 +69,8 @@ size_t abbe_film_tables_texels(const abbe_scene *scene, const abbe_plan *plan) {
 /* Which film is on which refractor and plane. */
 static void fill_numbers(const abbe_scene *scene, const abbe_plan *plan, float (*texel)[4]) {
   float(*plane)[4] = texel + plan->refractor_count;
+  uint32_t others;
+  abbe_film_tables_of(scene, plan, plan->refractor_count, &others);
   for (size_t r = 0; r < plan->refractor_count; r++) {
     const abbe_object *o = &scene->object[plan->refractor_object[r]];
     const bool planes = plan->model[r] == ABBE_REFRACTOR_CONVEX;
@@ -59,6 +79,11 @@ static void fill_numbers(const abbe_scene *scene, const abbe_plan *plan, float (
     const abbe_coatings *c = abbe_film_tables_of(scene, plan, r, &first);
     const bool apart = c != NULL && c->face != NULL;
     texel[r][0] = c == NULL ? -1 : !apart ? (float)first : planes ? -2 : -1;
+    if (c != NULL && is_crystal(scene, plan, r)) {
+      texel[r][1] = (float)(others - first);
+      texel[r][2] = (float)other_axis(o->material, (plan->desc.min_nm + plan->desc.max_nm) / 2);
+      others += (uint32_t)c->count;
+    }
     if (!planes) continue;
     if (apart) abbe_refractor_films(o, film);
     for (size_t i = 0; apart && i < o->exact.count; i++)
@@ -67,14 +92,17 @@ static void fill_numbers(const abbe_scene *scene, const abbe_plan *plan, float (
   }
 }
 
-static abbe_result evaluate(const abbe_coating *coating, const abbe_material *material,
+/* On the index of an axis; -1: on that of glass, or the ordinary or middle one. */
+static abbe_result evaluate(const abbe_coating *coating, const abbe_material *material, int axis,
                             double lambda_nm, shares out, abbe_error *error) {
   abbe_film_layer layer[ABBE_FILM_MOST_LAYERS];
   abbe_film_light light;
   const double air[2] = {1, 0};
   double n = 1, ignored;
   abbe_result result = abbe_coating_at(coating, lambda_nm, layer, error);
-  if (result == ABBE_OK) result = abbe_material_n(material, lambda_nm, &n, error);
+  if (result == ABBE_OK)
+    result = axis < 0 ? abbe_material_n(material, lambda_nm, &n, error)
+                      : abbe_material_n_along(material, axis, lambda_nm, &n, error);
   for (int i = 0; i < ANGLES && result == ABBE_OK; i++) {
     const double along = (i - ABBE_FILM_ANGLES) / (double)ABBE_FILM_ANGLES;
     const double beyond = 2 * along / (1 + along * along);
@@ -117,19 +145,19 @@ static void store_band(const steps *s, const double range_nm[2], float (*texel)[
   store((const double(*)[3])sum, texel);
 }
 
-static abbe_result fill_film(const abbe_coating *coating, const abbe_material *material,
+static abbe_result fill_film(const abbe_coating *coating, const abbe_material *material, int axis,
                              const abbe_plan *plan, const abbe_wavelengths *w, steps *s,
                              float (*texel)[4], abbe_error *error) {
   abbe_result result = ABBE_OK;
   size_t bands;
   row_count(plan, &bands);
   for (size_t i = 0; i < w->count && result == ABBE_OK; i++, texel += ANGLES) {
-    result = evaluate(coating, material, w->lambda_nm[i], s->of[0], error);
+    result = evaluate(coating, material, axis, w->lambda_nm[i], s->of[0], error);
     store((const double(*)[3])s->of[0], texel);
   }
   for (int k = 0; k < STEPS && result == ABBE_OK; k++)
-    result = evaluate(coating, material, s->min + (s->max - s->min) * (k + 0.5) / STEPS, s->of[k],
-                      error);
+    result = evaluate(coating, material, axis, s->min + (s->max - s->min) * (k + 0.5) / STEPS,
+                      s->of[k], error);
   for (int set = 0; set < ABBE_CAMERA_BAND_SETS && result == ABBE_OK; set++)
     for (size_t i = 0; i < bands; i++, texel += ANGLES) {
       double range_nm[2];
@@ -160,12 +188,16 @@ abbe_result abbe_film_tables_fill(const abbe_scene *scene, const abbe_plan *plan
   fill_numbers(scene, plan, texel);
   texel += plan->refractor_count + plane_count(scene, plan);
   abbe_result result = ABBE_OK;
-  for (size_t r = 0; r < plan->refractor_count; r++) {
+  for (size_t i = 0; i < 2 * plan->refractor_count; i++) {
+    const size_t r = i % plan->refractor_count;
+    const bool other = i >= plan->refractor_count;
+    const abbe_material *m = scene->object[plan->refractor_object[r]].material;
     uint32_t first;
     const abbe_coatings *c = abbe_film_tables_of(scene, plan, r, &first);
+    if (other && !is_crystal(scene, plan, r)) continue;
+    const int axis = other ? other_axis(m, (plan->desc.min_nm + plan->desc.max_nm) / 2) : -1;
     for (size_t k = 0; c != NULL && k < c->count && result == ABBE_OK; k++, texel += rows)
-      result = fill_film(&c->coating[k], scene->object[plan->refractor_object[r]].material, plan, w,
-                         &s, texel, error);
+      result = fill_film(&c->coating[k], m, axis, plan, w, &s, texel, error);
   }
   free(s.of);
   return result;

@@ -104,6 +104,18 @@ void turn_wave(Crystal c, vec3 reflects, vec3 n, float choice, inout int wave, i
   ray = goes_first ? ray_0 : second ? ray_1 : normalize(back);
 }
 
+#ifdef FILMS
+// What a film on refractor r, such a crystal, makes of a wave of index n: between its tables for two of the indices.
+vec2 wave_film_shares(Crystal c, int r, int film, bool outside, float cos_i, float n) {
+  vec2 shares = film_shares(film, outside, cos_i, n);
+  if (!is_crystal(c)) return shares;
+  vec4 of = texelFetch(film_texels, r);
+  float here = inversesqrt(c.inverse.y), other = inversesqrt(of.z > 0.0 ? c.inverse.z : c.inverse.x);
+  float part = other == here ? 0.0 : clamp((n - here) / (other - here), -1.0, 1.0);
+  return mix(shares, film_shares(film + int(of.y), outside, cos_i, n), part);
+}
+#endif
+
 #ifdef PLEOCHROIC
 // Shares of the attenuations along x, y and z in that of a wave, by a metre of its ray.
 vec3 axis_shares(Crystal c, int wave, vec3 k) {
