@@ -16,12 +16,6 @@ void abbe_gem_report_number(const abbe_gem_judgement_row *row, char value[32], c
 
 /* ---- for people ---- */
 
-static double rays(const abbe_gem_view *v) {
-  double met = 0;
-  for (size_t r = 0; r < v->repeats; r++) met += v->met[r];
-  return met;
-}
-
 /* How it lies, and its colour in other ways. */
 static void print_crystal(const abbe_gem_report_facts *f) {
   const abbe_gem_judgement *j = f->judgement;
@@ -47,7 +41,8 @@ void abbe_gem_report_print(const abbe_gem_report_facts *f) {
          f->input->in.material->name, 1000 * f->input->width_m);
   printf(
       "%.0f rays of the eye from above, each at %zu wavelength%s; head's half angle %g degrees\n",
-      rays(&j->view), j->view.wavelengths, j->view.wavelengths == 1 ? "" : "s", f->head_deg);
+      j->view.colour[0].weight, j->view.wavelengths, j->view.wavelengths == 1 ? "" : "s",
+      f->head_deg);
   print_crystal(f);
   if (j->has_tilts)
     printf("tilted about %d axes up to %g degrees by %g\n", ABBE_GEM_AXES,
@@ -162,7 +157,7 @@ abbe_result abbe_gem_report_print_json(const abbe_gem_report_facts *f, abbe_erro
   if (j->is_crystal) add_crystal(root, f);
   cJSON_AddNumberToObject(root, "width_mm", 1000 * f->input->width_m);
   cJSON_AddNumberToObject(root, "head_deg", f->head_deg);
-  cJSON_AddNumberToObject(root, "rays", rays(&j->view));
+  cJSON_AddNumberToObject(root, "rays", j->view.colour[0].weight);
   cJSON_AddNumberToObject(root, "seconds", f->seconds);
   cJSON *measures = cJSON_AddObjectToObject(root, "measures");
   for (size_t i = 0; i < count; i++) add_number(measures, row[i].name, row[i].number);

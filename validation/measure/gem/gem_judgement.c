@@ -16,12 +16,6 @@ void abbe_gem_judgement_free(abbe_gem_judgement *judgement) {
 /* Under tilts, where each ray takes ten times as long. */
 enum { CRYSTAL_REPEATS = 4 };
 
-static abbe_gem_number colour(const abbe_gem_view *v, int c) {
-  double sum[ABBE_GEM_MOST_REPEATS];
-  for (size_t r = 0; r < v->repeats; r++) sum[r] = v->colour[r][c];
-  return abbe_gem_number_ratio(sum, v->met, v->repeats);
-}
-
 abbe_gem_axes abbe_gem_orientation_axes(const abbe_gem_stone *stone, double tilt, double azimuth) {
   const double s = sin(tilt), c = cos(tilt), sa = sin(azimuth), ca = cos(azimuth);
   if (!abbe_media_is_biaxial(&stone->media, 0)) return (abbe_gem_axes){.z = {s * ca, s * sa, c}};
@@ -42,7 +36,7 @@ abbe_result abbe_gem_orientation_judge(const abbe_gem_stone *stone, const abbe_w
   if (result == ABBE_OK) result = abbe_gem_view_make(&turned, weights, desc, &view, error);
   if (result != ABBE_OK) return result;
   out->value = abbe_gem_view_amount(&view, measure);
-  for (int c = 0; c < 3; c++) xyz[c] = colour(&view, c).value;
+  for (int c = 0; c < 3; c++) xyz[c] = abbe_gem_sums_ratio(&view.colour[c]).value;
   abbe_difference_lab(xyz, weights->sum, out->lab);
   abbe_gem_view_free(&view);
   return ABBE_OK;
@@ -80,7 +74,7 @@ abbe_result abbe_gem_judgement_make(const abbe_gem_stone *stone, const abbe_weig
   if (result == ABBE_OK) {
     for (int a = 0; a < ABBE_GEM_AMOUNT_COUNT; a++)
       out->amount[a] = abbe_gem_view_amount(&out->view, (abbe_gem_amount)a);
-    for (int c = 0; c < 3; c++) out->xyz[c] = colour(&out->view, c);
+    for (int c = 0; c < 3; c++) out->xyz[c] = abbe_gem_sums_ratio(&out->view.colour[c]);
     out->contrast = abbe_gem_view_contrast(&out->view);
     result = abbe_gem_view_areas(&out->view, &out->areas, error);
   }

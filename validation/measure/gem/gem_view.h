@@ -2,8 +2,8 @@
  *
  * For each pixel, repeat and wavelength one ray of the eye, followed to all its exits. Means are
  * over the silhouette; those in white light are weighted by what the eye makes of each wavelength
- * under an illuminant (colorimetry/weights.h). Errors come from the repeats. Results do not depend
- * on the number of threads. Internal to validation/measure/gem/.
+ * under an illuminant (colorimetry/weights.h). Errors come from each pixel's scatter. Results do
+ * not depend on the number of threads. Internal to validation/measure/gem/.
  */
 #ifndef ABBE_VALIDATION_MEASURE_GEM_GEM_VIEW_H
 #define ABBE_VALIDATION_MEASURE_GEM_GEM_VIEW_H
@@ -31,9 +31,9 @@ typedef struct abbe_gem_view {
   /* [side][side][3] XYZ under light that is 1 everywhere above the girdle plane but at the head;
    * mean of all repeats, those that missed count as black; and what of them met the stone */
   float *xyz, *cover;
-  double (*spectrum)[ABBE_GEM_AMOUNT_COUNT]; /* [repeats][wavelengths] sums over rays that met it */
-  double *met;                               /* [repeats] how many did */
-  double colour[ABBE_GEM_MOST_REPEATS][3];   /* sums of XYZ of the same light, over rays that met */
+  /* [wavelengths] over rays that met it */
+  abbe_gem_sums (*spectrum)[ABBE_GEM_AMOUNT_COUNT];
+  abbe_gem_sums colour[3]; /* XYZ of the same light */
 } abbe_gem_view;
 
 /* weights: in XYZ, of the stone's wavelengths. ABBE_INVALID_ARGUMENT for sizes outside their
