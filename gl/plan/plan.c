@@ -344,8 +344,8 @@ static bool is_even(const abbe_radiance_map *map) {
   return true;
 }
 
-/* Whether soft light, without shadows, would show: near receivers a single exact solid hides some.
- */
+/* Whether soft light, without shadows, would show: near receivers exact solids hide some. Paths
+ * that go from one to the next are asked for by pinholes too. */
 static bool shades_softly(const abbe_scene *scene, const abbe_plan *plan) {
   enum { MOST_PARALLELOGRAMS = 64 };
   const double least = 0.01; /* of an environment's light */
@@ -353,14 +353,18 @@ static bool shades_softly(const abbe_scene *scene, const abbe_plan *plan) {
   for (size_t i = 0; i < scene->environment_lights; i++)
     soft -= scene->light[scene->light_count - 1 - i].power;
   if (!plan->surrounded || soft < least * scene->environment->luminance ||
-      plan->refractor_count != 1 || plan->multi_refractor_paths || plan->layers ||
+      plan->refractor_count == 0 || plan->layers ||
+      (plan->refractor_count > 1 && !plan->multi_refractor_paths) ||
       plan->receivers != ABBE_RECEIVER_EXACT || plan->parallelogram_count > MOST_PARALLELOGRAMS ||
       abbe_scene_is_hazy(scene) || (!plan->absorbing && is_even(&scene->environment->map)))
     return false;
+  for (size_t k = 0; k < plan->refractor_count; k++)
+    if (plan->model[k] == ABBE_REFRACTOR_BVH) return false;
   for (size_t i = 0; i < plan->receiver_count; i++)
-    if (abbe_reach_is_near(&scene->object[plan->receiver_object[i]],
-                           &scene->object[plan->refractor_object[0]]))
-      return true;
+    for (size_t k = 0; k < plan->refractor_count; k++)
+      if (abbe_reach_is_near(&scene->object[plan->receiver_object[i]],
+                             &scene->object[plan->refractor_object[k]]))
+        return true;
   return false;
 }
 

@@ -87,7 +87,8 @@ TEST(rough_mirrors_go_by_pinholes) {
   refuse_plan(text, &desc, ABBE_UNSUPPORTED, "the wand2003 profile knows smooth ones alone");
 }
 
-/* Where soft light is there and a solid stands near a receiver; else photons alone. */
+/* Where soft light is there and an exact solid stands near a receiver, alone or in company; else
+ * photons alone. */
 TEST(soft_light_near_a_solid_goes_by_pinholes) {
 #define DOME "environment: {size: 64, dome: cos}\n"
 #define EVEN "environment: {size: 64, uniform: 1}\n"
@@ -95,28 +96,38 @@ TEST(soft_light_near_a_solid_goes_by_pinholes) {
 #define HIGH_BALL                                                                                  \
   "- {name: ball, shape: sphere, radius: 0.08, levels: 2, transform: [{translate: [0, 0, 0.5]}], " \
   "material: flat}\n"
+#define MIRROR_BALL                                                                                \
+  "- {name: steel, shape: sphere, radius: 0.05, transform: [{translate: [0.3, 0, 0.05]}], "        \
+  "mirror: 0.9}\n"
   static const struct {
     const char *text;
     abbe_transport asked, taken;
+    bool in_turn;
   } cases[] = {
-      {CAMERA DOME FLOOR BALL("flat"), ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PINHOLE},
-      {CAMERA DOME FLOOR CASE("case", "0.2"), ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PINHOLE},
-      {CAMERA DOME FLOOR BALL("flat"), ABBE_TRANSPORT_PHOTONS, ABBE_TRANSPORT_PHOTONS},
-      {CAMERA EVEN FLOOR BALL("flat"), ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PHOTONS},
-      {CAMERA DOME FLOOR HIGH_BALL, ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PHOTONS},
-      {CAMERA DOME FLOOR RING("flat"), ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PHOTONS},
-      {CAMERA DOME FLOOR, ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PHOTONS},
-      {CAMERA POINT_LIGHT FLOOR BALL("flat"), ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PHOTONS},
+      {CAMERA DOME FLOOR BALL("flat"), ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PINHOLE, false},
+      {CAMERA DOME FLOOR CASE("case", "0.2"), ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PINHOLE, false},
+      {CAMERA DOME FLOOR BALL("flat"), ABBE_TRANSPORT_PHOTONS, ABBE_TRANSPORT_PHOTONS, false},
+      {CAMERA EVEN FLOOR BALL("flat"), ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PHOTONS, false},
+      {CAMERA DOME FLOOR HIGH_BALL, ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PHOTONS, false},
+      {CAMERA DOME FLOOR BALL("flat") HIGH_BALL, ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PINHOLE, true},
+      {CAMERA DOME FLOOR BALL("flat") MIRROR_BALL, ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PINHOLE,
+       true},
+      {CAMERA DOME FLOOR RING("flat"), ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PHOTONS, true},
+      {CAMERA DOME FLOOR BALL("flat") RING("flat"), ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PHOTONS,
+       true},
+      {CAMERA DOME FLOOR, ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PHOTONS, false},
+      {CAMERA POINT_LIGHT FLOOR BALL("flat"), ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PHOTONS, false},
       {CAMERA DOME "medium: {scattering: 0.1, box: [[-1, -1, 0], [1, 1, 2]]}\n" FLOOR BALL("flat"),
-       ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PHOTONS},
-      {CAMERA ALL_STANDS_OUT FLOOR BALL("flat"), ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PHOTONS},
+       ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PHOTONS, false},
+      {CAMERA ALL_STANDS_OUT FLOOR BALL("flat"), ABBE_TRANSPORT_AUTO, ABBE_TRANSPORT_PHOTONS,
+       false},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     const abbe_render_desc desc = {.transport = cases[i].asked};
     OWNED(abbe_scene, scene) = scene_of(cases[i].text);
     MADE(abbe_plan, plan, abbe_plan_make(&scene, &desc, &plan, &error));
     assert_int_equal(plan.desc.transport, cases[i].taken);
-    assert_int_equal(plan.multi_refractor_paths, i == 5);
+    assert_int_equal(plan.multi_refractor_paths, cases[i].in_turn);
   }
 }
 
