@@ -15,7 +15,7 @@ foreach(name
     guide_sums map_texels
     field
     file_comparison
-    flip frame_flicker
+    flip
     geometry
     haze air_light haze_grid shaft_photons haze_trace
     solid

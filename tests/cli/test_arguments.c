@@ -70,8 +70,6 @@ static const struct named {
     {"export", "output", WRITES},
     {"export", "materials", READS},
     {"export", "save-scene", WRITES},
-    {"flicker", "", READS},
-    {"flicker", "reference", READS},
     {"outline", "", READS},
     {"outline", "minus", READS},
     {"info", "", READS},

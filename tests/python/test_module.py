@@ -60,6 +60,24 @@ class Pictures(unittest.TestCase):
         self.assertFalse(os.path.exists("nowhere.exr"))
 
 
+class Series(unittest.TestCase):
+    def test_flicker(self):
+        truth = [numpy.ones((2, 3, 3)), numpy.ones((2, 3, 3))]
+        truth[1][0, 0] = 0
+        frames = [truth[0] + 0.5, truth[1] + 0.25]
+        row = abbe.flicker(frames, truth)
+        size = numpy.sqrt(5 / 6)
+        numpy.testing.assert_allclose(row[0, [0, 2]], (0.5, 0), atol=1e-7)
+        numpy.testing.assert_allclose(row[1], (0.25 / size, 0.25 / size, 0.75 / 15), atol=1e-7)
+        self.assertTrue(numpy.isnan(row[0, 1]))
+        alone = abbe.flicker(frames)
+        self.assertTrue(numpy.isnan(alone[:, [0, 2]]).all())
+        self.assertAlmostEqual(alone[1, 1], numpy.sqrt((5 * 0.25 ** 2 + 1.25 ** 2) /
+                                                       (5 * 1.25 ** 2 + 0.25 ** 2)), places=6)
+        with self.assertRaises(KeyError):
+            abbe.flicker(frames, layer="caustic")
+
+
 class Tables(unittest.TestCase):
     def test_indices(self):
         table = abbe.Materials()

@@ -10,7 +10,7 @@ Lengths are in metres, wavelengths in nanometres, angles in degrees. Everything 
 abbe.Error with a sentence that says why.
 """
 from ._native import Error, version
-from .comparison import Comparison, compare
+from .comparison import Comparison, compare, flicker
 from .gem import GemReport, gem_report
 from .materials import Material, Materials, weights
 from .picture import Picture, load
@@ -18,4 +18,4 @@ from .scene import Scene, presets
 
 __version__ = version()
 __all__ = ["Comparison", "Error", "GemReport", "Material", "Materials", "Picture", "Scene",
-           "compare", "gem_report", "load", "presets", "version", "weights"]
+           "compare", "flicker", "gem_report", "load", "presets", "version", "weights"]

@@ -2,6 +2,8 @@
 from collections import namedtuple
 from ctypes import byref, c_double, c_void_p
 
+import numpy
+
 from ._native import Handle, call, decode, encode, plain, required, settings
 from .picture import Picture
 
@@ -79,3 +81,29 @@ def compare(reference, test, mask=None, **how):
     """Holds a picture against a reference; arrays are taken as linear Rec.709. mask: "caustic", or
     a picture or array, above 0.5 inside."""
     return Comparison(reference, test, mask, **how)
+
+
+def flicker(frames, references=None, layer=""):
+    """How a series of pictures errs over time: a row (error, change, ghost) for each.
+
+    error: root mean square of the frame less its reference. change: the same of what that
+    difference has changed since the last frame. ghost: the frame's light where the reference has
+    less than a thousandth of its mean, as a share of the reference's light. The first two are
+    relative to the root mean square of the reference; without references, of the frame. NaN
+    stands for what is not known.
+    """
+    rows, before = [], None
+    for i, frame in enumerate(frames):
+        test = _picture(frame).layer(layer).astype(float)
+        truth = None if references is None else _picture(references[i]).layer(layer).astype(float)
+        now = test if truth is None else test - truth
+        size = numpy.sqrt(numpy.mean((test if truth is None else truth) ** 2))
+        change = numpy.nan if before is None else numpy.sqrt(numpy.mean((now - before) ** 2)) / size
+        before = now
+        if truth is None:
+            rows.append((numpy.nan, change, numpy.nan))
+            continue
+        light = truth.sum(axis=2)
+        ghost = test.sum(axis=2)[light <= 1e-3 * light.mean()].sum() / light.sum()
+        rows.append((numpy.sqrt(numpy.mean(now ** 2)) / size, change, ghost))
+    return numpy.array(rows)

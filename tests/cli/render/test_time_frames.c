@@ -38,11 +38,6 @@ TEST(frames_and_what_moves) {
   assert_string_equal(run_output, "./t-0003.png\n./t.png\n");
   run_must(LOUD "--frames 2:5 --fps 4 --png t.png -o t.exr --resume && cmp kept.exr t-0002.exr");
   assert_contains(run_errors, "no frame is left to draw");
-  /* a series held against itself has no error, and what moves is not flicker */
-  run_says("\"$abbe\" flicker t.exr --frames 2:5 --reference t.exr --json", "\"error\":\t0,");
-  assert_contains(run_output, "\"flicker\":\t0,");
-  run_says("\"$abbe\" flicker t.exr --frames 2:5", "picture, of the RMS of the frame");
-  run_fails("\"$abbe\" flicker t.exr --frames 2:6", 1, "t-0005.exr");
   run_must("rm t* one.exr kept.exr");
 }
 
