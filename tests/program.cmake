@@ -47,7 +47,6 @@ foreach(name
     environment_command
     gem_command
     gem_report_command
-    outline_command
     pixel_command
     printable_output
     relight_command

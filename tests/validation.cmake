@@ -29,7 +29,6 @@ foreach(name
     mirrors mirror_walk rough_mirrors coated_walk turned_paths crystal_walk double_refraction
     rings
     nl_means
-    outline
     bounded_trace
     checked_picture
     pass_error

@@ -36,8 +36,7 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(pixel, "say what a picture has at a pixel: spectrum, XYZ, wavelength, colour temperature")     \
   X(relight, "show a spectral picture to another observer, or under another illuminant")           \
   X(gamut, "say what of a picture a display's gamut cannot hold, and what mapping it costs")       \
-  X(compare, "say how far a picture or a receiver map is from a reference")                        \
-  X(outline, "say where a caustic's light and hues fall, and how far two pictures agree")
+  X(compare, "say how far a picture or a receiver map is from a reference")
 #define ABBE_DATA_COMMANDS(X)                                                                      \
   X(materials, "look into, edit, convert and check tables of materials")                           \
   X(weights, "what each wavelength sample adds to a colour, in XYZ or RGB")                        \

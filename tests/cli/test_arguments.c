@@ -70,8 +70,6 @@ static const struct named {
     {"export", "output", WRITES},
     {"export", "materials", READS},
     {"export", "save-scene", WRITES},
-    {"outline", "", READS},
-    {"outline", "minus", READS},
     {"info", "", READS},
     {"pixel", "lit-by", READS},
     {"pixel", "illuminant", READS},

@@ -71,11 +71,6 @@ TEST(compare) {
                   "plain.exr shows (0, 0) to (31, 23) and apart.exr (100, 50) to (131, 73)");
   ends_with(1, "$abbe compare plain.exr plain.exr --mask apart.exr");
   assert_contains(run_errors, "apart.exr shows (100, 50)");
-  ends_with(1, "$abbe outline plain.exr apart.exr");
-  assert_contains(run_errors, "apart.exr (100, 50)");
-  ends_with(1, "$abbe outline plain.exr --minus apart.exr");
-  assert_contains(run_errors, "apart.exr (100, 50)");
-  ends_with(0, "$abbe outline left.exr left.exr");
 }
 
 TEST(display) {
@@ -107,9 +102,7 @@ static void write_parts(const char *name) {
 
 /* Whoever reads a picture says which part of its file that is, and writes over no part of it. */
 TEST(parts) {
-  static const char *const lines[] = {"$abbe outline parts.exr",
-                                      "$abbe outline plain.exr --minus parts.exr",
-                                      "$abbe compare plain.exr plain.exr --mask parts.exr",
+  static const char *const lines[] = {"$abbe compare plain.exr plain.exr --mask parts.exr",
                                       "$abbe environment parts.exr",
                                       "$abbe environment 'parts.exr#2'",
                                       "$abbe environment scene.yaml",

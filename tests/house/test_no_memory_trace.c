@@ -10,7 +10,6 @@
 #include "validation/lab/known/rings.h"
 #include "validation/measure/compare.h"
 #include "validation/measure/file_comparison.h"
-#include "validation/measure/outline.h"
 #include "validation/trace/denoise.h"
 #include "validation/trace/tracer/checkpoint.h"
 
@@ -105,19 +104,6 @@ static abbe_result compare(abbe_error *error) {
   return result;
 }
 
-static abbe_result outlines(abbe_error *error) {
-  static double rgb[64][3];
-  OWNED(abbe_outline, a) = {0}, b = {0};
-  abbe_outline_agreement agreement;
-  for (size_t i = 0; i < 64; i++)
-    for (size_t c = 0; c < 3; c++) rgb[i][c] = (double)((i * (c + 3)) % 5);
-  abbe_result result = abbe_outline_make((const double(*)[3])rgb, 8, 8, NULL, &a, error);
-  if (result == ABBE_OK) result = abbe_outline_make((const double(*)[3])rgb, 8, 8, NULL, &b, error);
-  if (result == ABBE_OK) result = abbe_outline_compare(&a, &b, &agreement, error);
-  if (result == ABBE_OK) digest(&agreement.overlap, sizeof agreement.overlap);
-  return result;
-}
-
 static abbe_result pov(abbe_error *error) {
   const char *path = operation_path("scene.pov");
   FREED char *text = NULL;
@@ -169,7 +155,6 @@ TEST(traces) {
 
 TEST(comparisons) {
   static const operation list[] = {{"compare", compare, 0},
-                                   {"outlines", outlines, 0},
                                    {"POV-Ray scene", pov, 0},
                                    {"known answers", known, 6}};
   operation_check_all(list, sizeof list / sizeof *list);
