@@ -40,7 +40,6 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
 #define ABBE_DATA_COMMANDS(X)                                                                      \
   X(materials, "look into, edit, convert and check tables of materials")                           \
   X(weights, "what each wavelength sample adds to a colour, in XYZ or RGB")                        \
-  X(atlas, "show the spectral colours, what bands make of them, and what displays can show")       \
   X(validate, "hold the reference tracer against optics that is known")
 /* In Python, and not among those whose options the program knows. */
 #define ABBE_PYTHON_COMMANDS(X)                                                                    \
