@@ -35,7 +35,6 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(display, "turn a linear EXR into a picture for a display, through OpenColorIO")                \
   X(pixel, "say what a picture has at a pixel: spectrum, XYZ, wavelength, colour temperature")     \
   X(relight, "show a spectral picture to another observer, or under another illuminant")           \
-  X(gamut, "say what of a picture a display's gamut cannot hold, and what mapping it costs")       \
   X(compare, "say how far a picture or a receiver map is from a reference")
 #define ABBE_DATA_COMMANDS(X)                                                                      \
   X(materials, "look into, edit, convert and check tables of materials")                           \

@@ -102,11 +102,10 @@ static void write_parts(const char *name) {
 
 /* Whoever reads a picture says which part of its file that is, and writes over no part of it. */
 TEST(parts) {
-  static const char *const lines[] = {"$abbe compare plain.exr plain.exr --mask parts.exr",
-                                      "$abbe environment parts.exr",
-                                      "$abbe environment 'parts.exr#2'",
-                                      "$abbe environment scene.yaml",
-                                      "$abbe environment second.yaml"};
+  static const char *const lines[] = {
+      "$abbe compare plain.exr plain.exr --mask parts.exr", "$abbe environment parts.exr",
+      "$abbe environment 'parts.exr#2'", "$abbe environment scene.yaml",
+      "$abbe environment second.yaml"};
   static const char *const over[] = {
       "$abbe display 'parts.exr#2' -o parts.exr", "$abbe environment 'parts.exr#2' -o ./parts.exr",
       "$abbe compare plain.exr 'parts.exr#rgba' --difference parts.exr"};

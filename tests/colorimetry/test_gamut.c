@@ -28,16 +28,6 @@ TEST(there_and_back) {
     abbe_rgb_space_apply(to, v, v);
     for (int c = 0; c < 3; c++) assert_near(v[c], xyz[c], 1e-12);
   }
-  assert_string_equal(abbe_gamut_name(ABBE_GAMUT_COUNT), "unknown");
-}
-
-TEST(excess) {
-  const double in[3] = {2, 0, 1}, out[3] = {2, -0.5, 1}, dark[3] = {0, 0, 0},
-               under[3] = {-3, -1, 0};
-  assert_near(abbe_gamut_excess(in), 0, 0);
-  assert_near(abbe_gamut_excess(out), 0.25, 1e-15);
-  assert_near(abbe_gamut_excess(dark), 0, 0);
-  assert_near(abbe_gamut_excess(under), 1, 0);
 }
 
 /* Gamut maps: what is inside stays, the spectrum comes inside, and each keeps what it says it

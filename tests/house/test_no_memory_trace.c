@@ -154,8 +154,7 @@ TEST(traces) {
 }
 
 TEST(comparisons) {
-  static const operation list[] = {{"compare", compare, 0},
-                                   {"POV-Ray scene", pov, 0},
-                                   {"known answers", known, 6}};
+  static const operation list[] = {
+      {"compare", compare, 0}, {"POV-Ray scene", pov, 0}, {"known answers", known, 6}};
   operation_check_all(list, sizeof list / sizeof *list);
 }
