@@ -44,7 +44,6 @@ foreach(name
     materials_numbers
     materials_plot_command
     materials_exchange_command
-    environment_command
     gem_command
     gem_report_command
     pixel_command

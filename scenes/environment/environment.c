@@ -216,41 +216,6 @@ void abbe_environment_irradiance(const abbe_environment *environment, const doub
   abbe_radiance_map_irradiance(&environment->map, own, rgb);
 }
 
-typedef struct ranked {
-  float luminance;
-  uint32_t row;
-} ranked;
-
-static int brighter_first(const void *a, const void *b) {
-  const float x = ((const ranked *)a)->luminance, y = ((const ranked *)b)->luminance;
-  return (x < y) - (x > y);
-}
-
-abbe_result abbe_environment_brightest(const abbe_environment *environment, double of_sphere,
-                                       double *share, abbe_error *error) {
-  assert(environment->map.rgb);
-  const abbe_radiance_map *map = &environment->map;
-  const size_t count = map->width * map->height;
-  ranked *texel = malloc(count * sizeof *texel);
-  if (texel == NULL)
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a list of %zu texels", count);
-  for (size_t i = 0; i < count; i++) {
-    const float *rgb = map->rgb + 3 * i;
-    const double rgbs[3] = {(double)rgb[0], (double)rgb[1], (double)rgb[2]};
-    texel[i] = (ranked){(float)abbe_vector_dot(luminance, rgbs), (uint32_t)(i / map->width)};
-  }
-  qsort(texel, count, sizeof *texel, brighter_first);
-  double left = 4 * ABBE_PI * of_sphere, sum = 0;
-  for (size_t i = 0; i < count && left > 0; i++) {
-    const double solid = fmin(abbe_radiance_map_solid_angle(map, texel[i].row), left);
-    sum += solid * (double)texel[i].luminance;
-    left -= solid;
-  }
-  free(texel);
-  *share = fmin(sum / environment->luminance, 1);
-  return ABBE_OK;
-}
-
 /* --- sampling --- */
 
 /* A texel's share over polar angle: (a + b t) |sin(middle + t)|, t from its middle, in at most four

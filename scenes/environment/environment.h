@@ -80,11 +80,6 @@ void abbe_environment_radiance_of_level(const abbe_environment *environment, siz
 void abbe_environment_irradiance(const abbe_environment *environment, const double normal[3],
                                  double rgb[3]);
 
-/* The share, 0 to 1, of the light (by luminance) that comes from the brightest part of the sphere,
- * as large as of_sphere, 0 to 1, of it: how gathered the light is. ABBE_NO_MEMORY. */
-abbe_result abbe_environment_brightest(const abbe_environment *environment, double of_sphere,
-                                       double *share, abbe_error *error);
-
 /* A unit world direction for u in [0, 1)^3, the radiance from there, and its density, 1/sr, which
  * is the luminance of the radiance from there over its integral: radiance of one hue over pdf is
  * the same everywhere. Never one from which no light comes. */

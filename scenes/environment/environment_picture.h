@@ -7,7 +7,7 @@
  * bottom, upside down, in the upright one. The column holds OpenEXR's +X, -X, +Y, -Y, +Z and -Z
  * from above [OpenEXRImages], where +Z is ahead and +Y is up: the left, right, top, bottom, front
  * and back. Colours are taken by the file's chromaticities; a file that says nothing is linear
- * Rec.709.
+ * Rec.709. Internal to scenes/.
  */
 #ifndef ABBE_SCENES_ENVIRONMENT_ENVIRONMENT_PICTURE_H
 #define ABBE_SCENES_ENVIRONMENT_ENVIRONMENT_PICTURE_H

@@ -197,14 +197,9 @@ TEST(one_meaning_of_the_numbers) {
     must(0, "does not say its colour space; linear Rec.709 is taken", line);
   }
   MADE(abbe_image, image, abbe_image_make(8, 4, 3, rgbz, &image, &error));
-  for (int i = 0; i < 96; i++) image.data[i] = 1;
-  OK(abbe_exr_write(exr, &image, &error));
-  snprintf(line, sizeof line, "environment %s", exr);
-  must(0, "does not say its colour space", line);
   for (int i = 0; i < 96; i++) image.data[i] = i < 9 ? INFINITY : i < 12 ? NAN : 1;
   memcpy(image.xy, xy, sizeof xy);
   OK(abbe_exr_write(exr, &image, &error));
-  must(1, "3 are infinite and 1 not a number", line);
   snprintf(line, sizeof line, commands[0], exr, png);
   must(0, ": 3 pixels are infinite, ", line);
   must(0, ": 1 pixels are not a number (NaN)", line);

@@ -102,25 +102,23 @@ static void write_parts(const char *name) {
 
 /* Whoever reads a picture says which part of its file that is, and writes over no part of it. */
 TEST(parts) {
-  static const char *const lines[] = {
-      "$abbe compare plain.exr plain.exr --mask parts.exr", "$abbe environment parts.exr",
-      "$abbe environment 'parts.exr#2'", "$abbe environment scene.yaml",
-      "$abbe environment second.yaml"};
+  static const char *const lines[] = {"$abbe compare plain.exr plain.exr --mask parts.exr",
+                                      "$abbe plan scene.yaml", "$abbe plan second.yaml"};
   static const char *const over[] = {
-      "$abbe display 'parts.exr#2' -o parts.exr", "$abbe environment 'parts.exr#2' -o ./parts.exr",
+      "$abbe display 'parts.exr#2' -o parts.exr",
       "$abbe compare plain.exr 'parts.exr#rgba' --difference parts.exr"};
   write_parts("parts.exr");
   write_picture("plain.exr", (const int[]){0, 0, 31, 15}, (const int[]){0, 0, 31, 15});
-  run_must(
-      "for i in '' '#rgba'; do printf 'camera: {eye: [0, -1, 0], target: [0, 0, 0]}\\nobjects:\\n- "
-      "{shape: rectangle, width: 1, height: 1, reflectance: 0.5}\\nenvironment: {file: "
-      "\"parts.exr%s\"}\\n' \"$i\" >scene$i.yaml; done; mv 'scene#rgba.yaml' second.yaml; cp "
-      "parts.exr parts-0000.exr; cp plain.exr parts-0001.exr");
+  run_must("for i in '' '#rgba' '#1'; do printf 'camera: {eye: [0, -1, 0], target: [0, 0, "
+           "0]}\\nobjects:\\n- "
+           "{shape: rectangle, width: 1, height: 1, reflectance: 0.5}\\nenvironment: {file: "
+           "\"parts.exr%s\"}\\n' \"$i\" >scene$i.yaml; done; mv 'scene#rgba.yaml' second.yaml; cp "
+           "parts.exr parts-0000.exr; cp plain.exr parts-0001.exr");
   for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
     ends_with(0, lines[i]);
     assert_contains(run_errors, "its part 2 'rgba' of 2 is read");
   }
-  ends_with(1, "$abbe environment 'parts.exr#1'");
+  ends_with(1, "$abbe plan 'scene#1.yaml'");
   assert_contains(run_errors, "no channels R, G and B");
   for (size_t i = 0; i < sizeof over / sizeof *over; i++) {
     ends_with(2, over[i]);

@@ -152,19 +152,6 @@ TEST(levels_are_blurred) {
   abbe_environment_free(NULL);
 }
 
-TEST(the_brightest_part) {
-  double share;
-  MADE(abbe_environment, e, abbe_radiance_map_make(256, &e.map, &error));
-  for (size_t i = 0; i < 3 * 256 * 128; i++) e.map.rgb[i] = i / 3 % 256 < 64 ? 3 : 1;
-  abbe_environment_turn(0, NULL, 0, e.to_map);
-  OK(abbe_environment_prepare(&e, &error));
-  static const double known[][2] = {{0, 0}, {0.125, 0.25}, {0.25, 0.5}, {0.5, 2.0 / 3}, {1, 1}};
-  for (int i = 0; i < 5; i++) {
-    OK(abbe_environment_brightest(&e, known[i][0], &share, &error));
-    assert_near(share, known[i][1], 1e-6);
-  }
-}
-
 TEST(what_is_refused) {
   static const struct {
     float value;
