@@ -11,14 +11,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum {
-  OPTION_TO = 0x100,
-  OPTION_LAMBDA,
-  OPTION_PHOTONS,
-  OPTION_SAMPLES,
-  OPTION_MATERIALS,
-  OPTION_JSON
-};
+enum { OPTION_TO = 0x100, OPTION_PHOTONS, OPTION_SAMPLES, OPTION_MATERIALS, OPTION_JSON };
 
 #define NAME(code, name, ending, form, program) name ", "
 #define ENDING(code, name, ending, form, program) ending ", "
@@ -27,7 +20,6 @@ typedef struct request {
   const char *program, *scene, *output, *materials, *to;
   abbe_scene_input_changes changes;
   abbe_scene_export_target target; /* ABBE_SCENE_EXPORT_COUNT: POV-Ray */
-  abbe_scene_export_options other;
   abbe_pov_options pov;
   bool json, quiet;
 } request;
@@ -37,8 +29,6 @@ static const struct argp_option options[] = {
      0},
     {"to", OPTION_TO, "FORMAT", 0,
      ABBE_SCENE_EXPORTS(NAME) "or povray; by the file's ending where it is not said", 0},
-    {"lambda", OPTION_LAMBDA, "NM", 0, "wavelength of the one index that Mitsuba takes (587.5618)",
-     0},
     {"photons", OPTION_PHOTONS, "N", 0, "that POV-Ray shoots at refractors (100000)", 0},
     {"samples", OPTION_SAMPLES, "N", 0, "of POV-Ray's spectrum, 2 to 100 (31)", 0},
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
@@ -72,14 +62,11 @@ static void choose_target(request *q, struct argp_state *state) {
   const bool pov = q->pov.photons != 0 || q->pov.samples != 0;
   if (i < ABBE_SCENE_EXPORT_COUNT && pov)
     argp_error(state, "--photons and --samples are POV-Ray's; leave them out");
-  if (q->target != ABBE_SCENE_EXPORT_MITSUBA && q->other.lambda_nm != 0)
-    argp_error(state, "--lambda is for Mitsuba alone; leave it out");
 }
 
 static const abbe_take takes[] = {
     ABBE_TAKE_TEXT(request, 'o', output),
     ABBE_TAKE_TEXT(request, OPTION_TO, to),
-    ABBE_TAKE_NUMBER(request, OPTION_LAMBDA, other.lambda_nm, 380, 780),
     ABBE_TAKE_COUNT(request, OPTION_PHOTONS, pov.photons, 1, ABBE_POV_MAX_PHOTONS),
     ABBE_TAKE_COUNT(request, OPTION_SAMPLES, pov.samples, 2, ABBE_POV_MAX_SAMPLES),
     ABBE_TAKE_TEXT(request, OPTION_MATERIALS, materials),
@@ -173,9 +160,7 @@ static void add_glass_json(cJSON *list, const abbe_scene_export_glass *g) {
   cJSON_AddStringToObject(glass, "name", g->material->name);
   cJSON_AddStringToObject(glass, "form", abbe_export_form_name(g->index.form));
   if (g->index.form != ABBE_EXPORT_FORM_TABLE) {
-    const int count = g->index.form == ABBE_EXPORT_FORM_ONE     ? 1
-                      : g->index.form == ABBE_EXPORT_FORM_THREE ? 3
-                                                                : 2;
+    const int count = g->index.form == ABBE_EXPORT_FORM_THREE ? 3 : 2;
     cJSON_AddItemToObject(glass, "values", cJSON_CreateDoubleArray(g->index.value, count));
   }
   cJSON_AddNumberToObject(glass, "worst", g->index.worst);
@@ -220,8 +205,7 @@ static abbe_result write_scene(const request *q, const abbe_scene *scene, abbe_e
     return result == ABBE_OK && (q->json || !q->quiet) ? report_pov(q, scene, error) : result;
   }
   abbe_scene_export_report report = {0};
-  abbe_result result =
-      abbe_scene_export_write(q->output, scene, q->target, &q->other, &report, error);
+  abbe_result result = abbe_scene_export_write(q->output, scene, q->target, &report, error);
   if (result == ABBE_OK && q->json) result = report_json(q, &report, error);
   if (result == ABBE_OK && !q->json && !q->quiet) report_text(&report);
   abbe_scene_export_report_free(&report);
@@ -234,13 +218,11 @@ int abbe_command_export(int argc, char **argv) {
       parse,
       "SCENE.yaml",
       "Writes a scene for another program, and says what that cannot hold of it.\v"
-      "pbrt takes n as a table, Mitsuba one index, LuxCore two terms of Cauchy's, glTF n_d and an "
-      "Abbe number, Blender one index for red, green and blue each, POV-Ray two numbers. Pictures "
-      "and meshes are written beside the file, as STEM-NAME.\n\n"
+      "pbrt takes n as a table, glTF n_d and an Abbe number, Blender one index for red, green and "
+      "blue each, POV-Ray two numbers. Pictures are written beside the file, as STEM-NAME.\n\n"
       "Examples:\n"
       "  abbe export scenes/gem.yaml -o gem.pbrt\n"
       "  abbe export scenes/gem.yaml -o gem.glb --json\n"
-      "  abbe export scenes/prism.yaml -o prism.xml --lambda 486.1327\n"
       "  abbe export scenes/gem.yaml --to blender -o gem.py\n"
       "  abbe export scenes/prism.yaml -o prism.pov --photons 1000000 --samples 100\n",
       NULL,

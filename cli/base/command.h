@@ -26,7 +26,7 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(trace, "trace the reference: what light really does, with standard errors")                    \
   X(gem, "say what a gem's design holds, draw it, report on it, convert it, change its angles")    \
   X(plan, "say which passes and models a scene asks for, and why")                                 \
-  X(export, "write a scene for pbrt, Mitsuba, LuxCore, glTF, Blender or POV-Ray")                  \
+  X(export, "write a scene for pbrt, glTF, Blender or POV-Ray")                                    \
   X(volume, "compute an object's caustics beforehand, for light from all sides")                   \
   X(methods, "the published methods that render can take in place of its own, and their options")
 #define ABBE_PICTURE_COMMANDS(X)                                                                   \

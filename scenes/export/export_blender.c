@@ -214,7 +214,10 @@ static abbe_result write_light(const abbe_export_writing *w, size_t i, abbe_erro
 
 /* Its map has +x in the middle and +y to the left, as Abbe's own. */
 static void map_direction(double u, double v, double out[3]) {
-  abbe_export_direction(0.5 - u, v, out);
+  const double phi = 2 * ABBE_PI * (0.5 - u), theta = ABBE_PI * v;
+  out[0] = cos(phi) * sin(theta);
+  out[1] = sin(phi) * sin(theta);
+  out[2] = cos(theta);
 }
 
 static abbe_result write_environment(const abbe_export_writing *w, abbe_error *error) {
@@ -222,7 +225,8 @@ static abbe_result write_environment(const abbe_export_writing *w, abbe_error *e
           "picture(world.node_tree.nodes, world.node_tree.links, '%s-environment.exr',\n"
           "        sky.inputs['Color'], 'ShaderNodeTexEnvironment')\n",
           w->files->name);
-  return abbe_export_panorama(w, map_direction, error);
+  const size_t of_map = w->scene->environment->map.width, width = of_map < 2048 ? of_map : 2048;
+  return abbe_export_environment(w, width, width / 2, map_direction, error);
 }
 
 static void write_glass(const abbe_export_writing *w, size_t i) {

@@ -36,17 +36,13 @@ double abbe_export_index_at(const abbe_export_index *index, double lambda_nm) {
   switch (index->form) {
   case ABBE_EXPORT_FORM_TABLE:
     return table_at(index->table, lambda_nm);
-  case ABBE_EXPORT_FORM_CAUCHY:
-    return v[0] + v[1] * inverse_square(lambda_nm);
   case ABBE_EXPORT_FORM_ABBE: /* n_F - n_C = (n_d - 1) / V_d, straight in 1 / lambda^2 */
     return v[0] + (v[0] - 1) * v[1] / 20 * (inverse_square(lambda_nm) - inverse_square(LINE_D_NM)) /
                       (inverse_square(LINE_F_NM) - inverse_square(LINE_C_NM));
-  case ABBE_EXPORT_FORM_THREE:
+  default: /* THREE */
     return lambda_nm > 0.5 * (primary_nm[0] + primary_nm[1])   ? v[0]
            : lambda_nm > 0.5 * (primary_nm[1] + primary_nm[2]) ? v[1]
                                                                : v[2];
-  default:
-    return v[0];
   }
 }
 
@@ -61,20 +57,6 @@ static abbe_result index_held(const abbe_material *m, double lambda_nm, double *
   return result;
 }
 
-static abbe_result fit_cauchy(const abbe_material *m, double value[3], abbe_error *error) {
-  double count = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (double nm = ABBE_WAVELENGTH_MIN_NM; nm <= ABBE_WAVELENGTH_MAX_NM; nm += 1) {
-    double n = 0;
-    ABBE_TRY(index_held(m, nm, &n, error));
-    const double at = inverse_square(nm);
-    count += 1, x += at, y += n, xx += at * at, xy += at * n;
-  }
-  value[1] = (count * xy - x * y) / (count * xx - x * x);
-  if (fabs(value[1]) < 1e-12) value[1] = 0; /* rounding of a constant index */
-  value[0] = (y - value[1] * x) / count;
-  return ABBE_OK;
-}
-
 static abbe_result fit_abbe(const abbe_material *m, double value[3], abbe_error *error) {
   double n_f = 0, n_c = 0;
   ABBE_TRY(index_held(m, LINE_D_NM, &value[0], error));
@@ -84,8 +66,7 @@ static abbe_result fit_abbe(const abbe_material *m, double value[3], abbe_error 
   return ABBE_OK;
 }
 
-static abbe_result fit(const abbe_material *m, double lambda_nm, abbe_export_index *out,
-                       abbe_error *error) {
+static abbe_result fit(const abbe_material *m, abbe_export_index *out, abbe_error *error) {
   abbe_result result = ABBE_OK;
   switch (out->form) {
   case ABBE_EXPORT_FORM_TABLE:
@@ -93,16 +74,12 @@ static abbe_result fit(const abbe_material *m, double lambda_nm, abbe_export_ind
       result = index_held(m, ABBE_EXPORT_TABLE_FIRST_NM + i * ABBE_EXPORT_TABLE_STEP_NM,
                           &out->table[i], error);
     return result;
-  case ABBE_EXPORT_FORM_CAUCHY:
-    return fit_cauchy(m, out->value, error);
   case ABBE_EXPORT_FORM_ABBE:
     return fit_abbe(m, out->value, error);
-  case ABBE_EXPORT_FORM_THREE:
+  default: /* THREE */
     for (int c = 0; c < 3 && result == ABBE_OK; c++)
       result = index_held(m, primary_nm[c], &out->value[c], error);
     return result;
-  default:
-    return index_held(m, lambda_nm, &out->value[0], error);
   }
 }
 
@@ -127,7 +104,7 @@ static abbe_result measure(const abbe_material *m, abbe_export_index *out, abbe_
 }
 
 abbe_result abbe_export_index_make(const abbe_material *material, abbe_export_form form,
-                                   double lambda_nm, abbe_export_index *out, abbe_error *error) {
+                                   abbe_export_index *out, abbe_error *error) {
   const double last_nm =
       ABBE_EXPORT_TABLE_FIRST_NM + (ABBE_EXPORT_TABLE_COUNT - 1) * ABBE_EXPORT_TABLE_STEP_NM;
   double ignored;
@@ -144,6 +121,6 @@ abbe_result abbe_export_index_make(const abbe_material *material, abbe_export_fo
                       &ignored, NULL) != ABBE_OK ||
       abbe_material_n(material, form == ABBE_EXPORT_FORM_TABLE ? last_nm : ABBE_WAVELENGTH_MAX_NM,
                       &ignored, NULL) != ABBE_OK;
-  ABBE_TRY(fit(material, lambda_nm, out, error));
+  ABBE_TRY(fit(material, out, error));
   return measure(material, out, error);
 }

@@ -14,7 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Quotes and brackets are the formats' own, and LuxCore reads by blanks. */
+/* Quotes, brackets and blanks are the formats' own. */
 static bool spellable(const char *name) {
   for (; *name != '\0'; name++)
     if ((unsigned char)*name <= ' ' || strchr("\"'\\<>&|#$", *name) != NULL) return false;
@@ -38,7 +38,6 @@ abbe_result abbe_export_files_begin(abbe_export_files *files, const char *path, 
 void abbe_export_files_free(abbe_export_files *files) {
   for (size_t i = 0; i < files->count; i++) {
     free(files->file[i].path);
-    free(files->file[i].data);
     abbe_image_free(&files->file[i].picture);
   }
   free(files->file);
@@ -46,47 +45,22 @@ void abbe_export_files_free(abbe_export_files *files) {
   memset(files, 0, sizeof *files);
 }
 
-static abbe_result add(abbe_export_files *files, const char *suffix, abbe_export_file **out,
-                       abbe_error *error) {
+/* The picture is taken, whatever the result. */
+static abbe_result add_picture(abbe_export_files *files, const char *suffix, abbe_image *picture,
+                               abbe_error *error) {
   abbe_export_file *all = realloc(files->file, (files->count + 1) * sizeof *all);
   const size_t size = strlen(files->stem) + strlen(suffix) + 1;
   char *path = malloc(size);
   if (all != NULL) files->file = all;
   if (all == NULL || path == NULL) {
     free(path);
+    abbe_image_free(picture);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for an exported file");
   }
   snprintf(path, size, "%s%s", files->stem, suffix);
-  *out = &files->file[files->count++];
-  memset(*out, 0, sizeof **out);
-  (*out)->path = path;
-  (*out)->fresh = access(path, F_OK) != 0;
-  return ABBE_OK;
-}
-
-abbe_result abbe_export_files_add(abbe_export_files *files, const char *suffix, char *data,
-                                  size_t size, abbe_error *error) {
-  abbe_export_file *file = NULL;
-  const abbe_result result = add(files, suffix, &file, error);
-  if (result != ABBE_OK) {
-    free(data);
-    return result;
-  }
-  file->data = data;
-  file->size = size;
-  return ABBE_OK;
-}
-
-static abbe_result export_files_add_picture(abbe_export_files *files, const char *suffix,
-                                            abbe_image *picture, abbe_error *error) {
-  abbe_export_file *file = NULL;
-  const abbe_result result = add(files, suffix, &file, error);
-  if (result != ABBE_OK) {
-    abbe_image_free(picture);
-    return result;
-  }
-  file->picture = *picture;
-  memset(picture, 0, sizeof *picture);
+  files->file[files->count++] =
+      (abbe_export_file){.path = path, .picture = *picture, .fresh = access(path, F_OK) != 0};
+  *picture = (abbe_image){0};
   return ABBE_OK;
 }
 
@@ -94,8 +68,7 @@ abbe_result abbe_export_files_write(abbe_export_files *files, abbe_error *error)
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < files->count && result == ABBE_OK; i++) {
     abbe_export_file *file = &files->file[i];
-    result = file->data != NULL ? abbe_file_write(file->path, file->data, file->size, error)
-                                : abbe_exr_write(file->path, &file->picture, error);
+    result = abbe_exr_write(file->path, &file->picture, error);
     file->written = result == ABBE_OK;
   }
   if (result != ABBE_OK) abbe_export_files_undo(files);
@@ -282,20 +255,20 @@ void abbe_export_attenuation_rgb(const abbe_material *material, double per_m[3])
   for (int c = 0; c < 3; c++) per_m[c] = abbe_material_attenuation(material, nm[c]);
 }
 
-void abbe_export_nk(const abbe_material *conductor, double lambda_nm, double *n, double *k) {
+static void export_nk(const abbe_material *conductor, double lambda_nm, double *n, double *k) {
   const double at = fmin(fmax(lambda_nm, conductor->min_nm), conductor->max_nm);
   if (abbe_material_nk(conductor, at, n, k, NULL) != ABBE_OK) *n = *k = 1;
 }
 
 double abbe_export_conductor_n(const abbe_material *conductor, double lambda_nm) {
   double n, k;
-  abbe_export_nk(conductor, lambda_nm, &n, &k);
+  export_nk(conductor, lambda_nm, &n, &k);
   return n;
 }
 
 double abbe_export_conductor_k(const abbe_material *conductor, double lambda_nm) {
   double n, k;
-  abbe_export_nk(conductor, lambda_nm, &n, &k);
+  export_nk(conductor, lambda_nm, &n, &k);
   return k;
 }
 
@@ -312,7 +285,7 @@ void abbe_export_mirror_rgb(const abbe_object *mirror, double rgb[3]) {
   abbe_weights_range_make(&d65, ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM, &range);
   for (double nm = ABBE_WAVELENGTH_MIN_NM; nm < ABBE_WAVELENGTH_MAX_NM; nm += 5) {
     double n, k, band[3];
-    abbe_export_nk(mirror->conductor, nm + 2.5, &n, &k);
+    export_nk(mirror->conductor, nm + 2.5, &n, &k);
     const double reflected = ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k);
     abbe_weights_range_xyz(&range, nm, nm + 5, band);
     for (int c = 0; c < 3; c++) xyz[c] += reflected * band[c];
@@ -350,21 +323,7 @@ abbe_result abbe_export_environment(const abbe_export_writing *w, size_t width, 
     for (int c = 0; c < 3; c++)
       picture.data[3 * i + (size_t)c] = (float)(white[c] * sum[c] / (FINE * FINE));
   }
-  return export_files_add_picture(w->files, "-environment.exr", &picture, error);
-}
-
-abbe_result abbe_export_panorama(const abbe_export_writing *w,
-                                 void (*direction)(double u, double v, double out[3]),
-                                 abbe_error *error) {
-  const size_t of_map = w->scene->environment->map.width, width = of_map < 2048 ? of_map : 2048;
-  return abbe_export_environment(w, width, width / 2, direction, error);
-}
-
-void abbe_export_direction(double turns, double v, double out[3]) {
-  const double phi = 2 * ABBE_PI * turns, theta = ABBE_PI * v;
-  out[0] = cos(phi) * sin(theta);
-  out[1] = sin(phi) * sin(theta);
-  out[2] = cos(theta);
+  return add_picture(w->files, "-environment.exr", &picture, error);
 }
 
 abbe_result abbe_export_texture(const abbe_export_writing *w, const abbe_object *object,
@@ -378,7 +337,7 @@ abbe_result abbe_export_texture(const abbe_export_writing *w, const abbe_object 
       picture.data[3 * i + c] =
           (float)(object->reflectance[c] * (double)from->data[from->channels * i + c]);
   snprintf(suffix, sizeof suffix, "-%s.exr", name);
-  return export_files_add_picture(w->files, suffix, &picture, error);
+  return add_picture(w->files, suffix, &picture, error);
 }
 
 bool abbe_export_is_faceted(const abbe_mesh *mesh) {

@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* The files that stand beside an exported one: meshes, pictures, settings.
+/* The pictures that stand beside an exported file.
  *
  * They are gathered in memory and written at the end, each beside its target and renamed, before
  * the file that names them. Where one cannot be written, those that were not there before are
@@ -19,8 +19,6 @@
 
 typedef struct abbe_export_file {
   char *path;
-  char *data; /* NULL: a picture */
-  size_t size;
   abbe_image picture;
   bool written, fresh;
 } abbe_export_file;
@@ -35,11 +33,6 @@ typedef struct abbe_export_files {
 /* Zeroed before. ABBE_UNSUPPORTED for a name that the formats cannot spell, ABBE_NO_MEMORY. */
 abbe_result abbe_export_files_begin(abbe_export_files *files, const char *path, abbe_error *error);
 void abbe_export_files_free(abbe_export_files *files);
-
-/* Adds the file STEM + suffix: of size bytes of data, or of a picture. Both are taken, whatever the
- * result. ABBE_NO_MEMORY. */
-abbe_result abbe_export_files_add(abbe_export_files *files, const char *suffix, char *data,
-                                  size_t size, abbe_error *error);
 
 abbe_result abbe_export_files_write(abbe_export_files *files, abbe_error *error);
 /* Removes what was written and had not been there. */
@@ -59,8 +52,6 @@ typedef struct abbe_export_writing {
 
 /* One for each format. */
 abbe_result abbe_export_pbrt(const abbe_export_writing *w, abbe_error *error);
-abbe_result abbe_export_mitsuba(const abbe_export_writing *w, abbe_error *error);
-abbe_result abbe_export_luxcore(const abbe_export_writing *w, abbe_error *error);
 abbe_result abbe_export_gltf(const abbe_export_writing *w, abbe_error *error);
 abbe_result abbe_export_blender(const abbe_export_writing *w, abbe_error *error);
 
@@ -102,8 +93,6 @@ abbe_result abbe_export_light_mesh(const abbe_light *light, abbe_mesh *out, abbe
 /* Attenuation for red, green and blue, 1/m, at the dominant wavelengths of the primaries. */
 void abbe_export_attenuation_rgb(const abbe_material *material, double per_m[3]);
 /* n and k of a conductor at the wavelength, held at the ends of the data. */
-void abbe_export_nk(const abbe_material *conductor, double lambda_nm, double *n, double *k);
-/* One of them. */
 double abbe_export_conductor_n(const abbe_material *conductor, double lambda_nm);
 double abbe_export_conductor_k(const abbe_material *conductor, double lambda_nm);
 /* What a mirror reflects of white light at normal incidence, linear Rec.709 within 0 to 1. */
@@ -117,13 +106,6 @@ double abbe_export_roughness(const abbe_object *mirror);
 abbe_result abbe_export_environment(const abbe_export_writing *w, size_t width, size_t height,
                                     void (*direction)(double u, double v, double out[3]),
                                     abbe_error *error);
-/* The same, twice as wide as high and at most 2048 pixels wide. */
-abbe_result abbe_export_panorama(const abbe_export_writing *w,
-                                 void (*direction)(double u, double v, double out[3]),
-                                 abbe_error *error);
-/* The direction at so many turns from +x towards +y, and at v from the zenith, 0, to the nadir, 1.
- */
-void abbe_export_direction(double turns, double v, double out[3]);
 /* Adds the receiver's texture times its reflectance as STEM-NAME.exr. */
 abbe_result abbe_export_texture(const abbe_export_writing *w, const abbe_object *object,
                                 const char *name, abbe_error *error);

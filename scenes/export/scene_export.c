@@ -10,8 +10,6 @@
 
 /* What a format cannot hold of a scene, before anything is written. */
 
-#define ABBE_EXPORT_LINE_D_NM 587.5618
-
 typedef struct survey {
   const abbe_scene *scene;
   abbe_scene_export_target target;
@@ -25,8 +23,7 @@ typedef struct survey {
 #define CHANGED(s, name, ...)                                                                      \
   abbe_report_add(&(s)->report->notes, ABBE_NOTE_CHANGED, 0, name, __VA_ARGS__)
 
-static abbe_result add_glass(const survey *s, const abbe_material *m, double lambda_nm,
-                             abbe_error *error) {
+static abbe_result add_glass(const survey *s, const abbe_material *m, abbe_error *error) {
 #define ABBE_SURVEY_FORM(code, name, ending, form, program) ABBE_EXPORT_FORM_##form,
   static const abbe_export_form forms[] = {ABBE_SCENE_EXPORTS(ABBE_SURVEY_FORM)};
   abbe_scene_export_report *r = s->report;
@@ -36,7 +33,7 @@ static abbe_result add_glass(const survey *s, const abbe_material *m, double lam
   if (all == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a report");
   r->glass = all;
   abbe_scene_export_glass *g = &all[r->glass_count];
-  ABBE_TRY(abbe_export_index_make(m, forms[s->target], lambda_nm, &g->index, error));
+  ABBE_TRY(abbe_export_index_make(m, forms[s->target], &g->index, error));
   g->material = m;
   r->glass_count++;
   if (g->index.held)
@@ -51,35 +48,17 @@ static abbe_result add_glass(const survey *s, const abbe_material *m, double lam
     LOST(s, m->name, "its pleochroism; the mean of its absorption over its axes is written");
   if (abbe_material_is_fluorescent(m))
     LOST(s, m->name, "its fluorescence%s", m->attenuation == NULL ? ", and what excites it" : "");
-  if (g->index.form == ABBE_EXPORT_FORM_ONE && m->dispersion.model != ABBE_DISPERSION_CONSTANT)
-    LOST(s, m->name, "its dispersion: the format takes one index, that of %.7g nm", lambda_nm);
-  if (g->index.form == ABBE_EXPORT_FORM_CAUCHY && g->index.value[1] < 0)
-    LOST(s, m->name, "its index rises with the wavelength, for which there is no B below 0");
   if (m->attenuation != NULL && !s->spectral)
     CHANGED(s, m->name, "absorption is three numbers, of 611.4, 549.1 and 464.2 nm");
-  if (m->attenuation != NULL && s->target == ABBE_SCENE_EXPORT_MITSUBA)
-    CHANGED(s, m->name, "absorption is seen by the integrator volpath alone");
   return ABBE_OK;
 }
 
-static void survey_roughness(const survey *s, const abbe_object *o) {
-  const abbe_microfacets *m = &o->brushing.facets;
-  if (!abbe_brushing_is_rough(&o->brushing)) return;
-  if (s->target == ABBE_SCENE_EXPORT_LUXCORE && o->conductor == NULL)
-    LOST(s, o->name, "its roughness: a mirror that is no metal is smooth");
-  else if (m->x < m->y || m->y < m->x)
-    LOST(s, o->name, "the way its grooves run: the root of both roughnesses' product is written");
-  if (s->target == ABBE_SCENE_EXPORT_LUXCORE && o->conductor != NULL)
-    CHANGED(s, o->name, "its facets are Schlick's instead of GGX's");
-}
-
 static void survey_mirror(const survey *s, const abbe_object *o) {
-  survey_roughness(s, o);
+  const abbe_microfacets *m = &o->brushing.facets;
+  if (abbe_brushing_is_rough(&o->brushing) && (m->x < m->y || m->y < m->x))
+    LOST(s, o->name, "the way its grooves run: the root of both roughnesses' product is written");
   if (o->conductor != NULL) {
-    if (s->target == ABBE_SCENE_EXPORT_LUXCORE)
-      CHANGED(s, o->name, "n and k are three numbers each, of 611.4, 549.1 and 464.2 nm");
-    else if (!s->spectral)
-      LOST(s, o->name, "n and k: its colour at normal incidence is written");
+    if (!s->spectral) LOST(s, o->name, "n and k: its colour at normal incidence is written");
   } else if (s->target == ABBE_SCENE_EXPORT_PBRT) {
     CHANGED(s, o->name,
             "its reflectance is that of a conductor at normal incidence, and rises at grazing");
@@ -88,8 +67,7 @@ static void survey_mirror(const survey *s, const abbe_object *o) {
   }
 }
 
-static abbe_result survey_object(const survey *s, const abbe_object *o, double lambda_nm,
-                                 abbe_error *error) {
+static abbe_result survey_object(const survey *s, const abbe_object *o, abbe_error *error) {
   const abbe_object_kind kind = abbe_object_kind_of(o);
   abbe_result result = ABBE_OK;
   if (o->cloud) {
@@ -98,7 +76,7 @@ static abbe_result survey_object(const survey *s, const abbe_object *o, double l
   }
   if (o->exact.kind == ABBE_EXACT_SPHERE && !s->spheres)
     CHANGED(s, o->name, "the sphere is %zu triangles", o->mesh.face_count);
-  if (kind == ABBE_OBJECT_REFRACTOR) result = add_glass(s, o->material, lambda_nm, error);
+  if (kind == ABBE_OBJECT_REFRACTOR) result = add_glass(s, o->material, error);
   if (kind == ABBE_OBJECT_MIRROR) survey_mirror(s, o);
   if (o->coatings != NULL) LOST(s, o->name, "its coating: its faces are bare");
   if (o->roughness != NULL) LOST(s, o->name, "its roughness: its faces are polished");
@@ -118,11 +96,6 @@ static void survey_light(const survey *s, const abbe_light *light) {
   const abbe_scene_export_target target = s->target;
   if (!s->spectral && light->illuminant.kind != ABBE_ILLUMINANT_D65)
     CHANGED(s, light->name, "its spectrum is a colour, linear Rec.709");
-  if (soft && target == ABBE_SCENE_EXPORT_MITSUBA)
-    CHANGED(s, light->name, "its edge fades in proportion to the angle, not by a smoothstep");
-  if (light->kind == ABBE_LIGHT_SPOT && target == ABBE_SCENE_EXPORT_LUXCORE)
-    CHANGED(s, light->name, "intensity goes with 1 / cosine off its axis%s",
-            soft ? ", and its edge fades with the fourth power of the cosine" : "");
   if (soft && target == ABBE_SCENE_EXPORT_GLTF)
     CHANGED(s, light->name, "its edge fades as the viewer has it");
   if (light->polariser.kind != ABBE_POLARISER_NONE)
@@ -161,13 +134,12 @@ static void survey_surroundings(const survey *s) {
 
 /* Fills the zeroed report: each material's index in the target's form, and notes. */
 static abbe_result export_survey(const abbe_scene *scene, abbe_scene_export_target target,
-                                 double lambda_nm, abbe_scene_export_report *report,
-                                 abbe_error *error) {
-  const bool spectral = target == ABBE_SCENE_EXPORT_PBRT || target == ABBE_SCENE_EXPORT_MITSUBA;
+                                 abbe_scene_export_report *report, abbe_error *error) {
+  const bool spectral = target == ABBE_SCENE_EXPORT_PBRT;
   const survey s = {scene, target, spectral, spectral, report};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++)
-    result = survey_object(&s, &scene->object[i], lambda_nm, error);
+    result = survey_object(&s, &scene->object[i], error);
   if (result != ABBE_OK) return result;
   for (size_t i = 0; i < scene->light_count; i++) survey_light(&s, &scene->light[i]);
   survey_surroundings(&s);
@@ -179,8 +151,6 @@ static const struct {
   abbe_result (*write)(const abbe_export_writing *w, abbe_error *error);
 } targets[] = {
     [ABBE_SCENE_EXPORT_PBRT] = {"pbrt", ".pbrt", abbe_export_pbrt},
-    [ABBE_SCENE_EXPORT_MITSUBA] = {"mitsuba", ".xml", abbe_export_mitsuba},
-    [ABBE_SCENE_EXPORT_LUXCORE] = {"luxcore", ".scn", abbe_export_luxcore},
     [ABBE_SCENE_EXPORT_GLTF] = {"gltf", ".glb", abbe_export_gltf},
     [ABBE_SCENE_EXPORT_BLENDER] = {"blender", ".py", abbe_export_blender},
 };
@@ -250,11 +220,8 @@ static abbe_result write_all(const char *path, const abbe_export_writing *asked,
 
 abbe_result abbe_scene_export_write(const char *path, const abbe_scene *scene,
                                     abbe_scene_export_target target,
-                                    const abbe_scene_export_options *options,
                                     abbe_scene_export_report *report, abbe_error *error) {
   const char *ending = strrchr(abbe_file_name(path), '.');
-  const double lambda_nm =
-      options != NULL && options->lambda_nm != 0 ? options->lambda_nm : ABBE_EXPORT_LINE_D_NM;
   memset(report, 0, sizeof *report);
   if (!known(target))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no format %d to export to",
@@ -262,12 +229,8 @@ abbe_result abbe_scene_export_write(const char *path, const abbe_scene *scene,
   if (ending == NULL || strcasecmp(ending, targets[target].ending) != 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: a file for %s ends in %s", path,
                           targets[target].name, targets[target].ending);
-  if (!(lambda_nm >= 380 && lambda_nm <= 780))
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the wavelength of the one index is from 380 to 780 nm, not %g",
-                          lambda_nm);
   ABBE_TRY(abbe_scene_check(scene, error));
-  ABBE_TRY(export_survey(scene, target, lambda_nm, report, error));
+  ABBE_TRY(export_survey(scene, target, report, error));
   const abbe_export_writing w = {.scene = scene, .target = target, .report = report};
   return write_all(path, &w, error);
 }

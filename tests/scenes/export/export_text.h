@@ -41,7 +41,7 @@ __attribute__((noinline)) static char *written(const abbe_scene *scene,
   char *text = NULL;
   size_t size = 0;
   const char *path = printed("%s/it%s", folder, abbe_scene_export_ending(target));
-  OK(abbe_scene_export_write(path, scene, target, NULL, &report, &error));
+  OK(abbe_scene_export_write(path, scene, target, &report, &error));
   OK(abbe_file_read(path, 1 << 28, &text, &size, &error));
   if (target == ABBE_SCENE_EXPORT_GLTF) {
     uint32_t length;

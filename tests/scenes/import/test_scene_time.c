@@ -130,8 +130,7 @@ TEST(glass_is_as_warm_as_the_scene) {
   OK(abbe_material_n(scene.object[2].material, LINE_D_NM, &n, &error));
   assert_near(n, 1, 0);
   abbe_export_index index;
-  OK(abbe_export_index_make(scene.object[1].material, ABBE_EXPORT_FORM_ONE, LINE_D_NM, &index,
-                            &error));
+  OK(abbe_export_index_make(scene.object[1].material, ABBE_EXPORT_FORM_ABBE, &index, &error));
   assert_near(index.value[0], 1.5172435, 5e-8);
 }
 
