@@ -160,4 +160,6 @@ if(ABBE_VIEWER)
   add_test(NAME view_serve COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/view/serve
     $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR} $<IF:$<BOOL:${MICROHTTPD_FOUND}>,yes,no>)
   abbe_label(program NAMES view_serve)
+  add_test(NAME view_listen COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/view/listen $<TARGET_FILE:abbe>)
+  abbe_label(program NAMES view_listen)
 endif()

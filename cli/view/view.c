@@ -29,6 +29,7 @@ enum {
   OPTION_MATERIALS,
   OPTION_OCIO,
   OPTION_SERVE,
+  OPTION_LISTEN,
   OPTION_VOLUME,
   OPTION_WAVELENGTHS,
   OPTION_PHOTONS,
@@ -44,7 +45,7 @@ typedef struct view_options {
   size_t pictures;
   const char *program, *scene, *script, *keep, *materials, *ocio, *volume;
   size_t width, height, wavelengths, photons, map_size;
-  int last, port; /* port below 0: nothing is served */
+  int last, port, listen; /* ports below 0: nothing is served, or listened to */
   abbe_scene_input_changes changes;
 } view_options;
 
@@ -74,6 +75,10 @@ static const struct argp_option options[] = {
     {"serve", OPTION_SERVE, "PORT", 0,
      "without a display: a page for a browser on this machine, its address with a token on "
      "standard output; 0: any free port",
+     2},
+    {"listen", OPTION_LISTEN, "PORT", OPTION_ARG_OPTIONAL,
+     "show the pictures that programs on this machine send by tev's protocol (14158); 0: any free "
+     "port; it is said on standard output",
      2},
     {0}};
 
@@ -115,6 +120,10 @@ static void take_file(view_options *o, const char *path, struct argp_state *stat
   abbe_arguments_add(o->program, ABBE_ARGUMENT_READS, "the picture", path);
 }
 
+static bool looks_at_pictures(const view_options *o) {
+  return o->pictures > 0 || o->listen >= 0;
+}
+
 /* What is for a scene alone, or for pictures alone. */
 static void check_pictures(const view_options *o, struct argp_state *state) {
   const char *scene = o->scene               ? o->scene
@@ -127,9 +136,9 @@ static void check_pictures(const view_options *o, struct argp_state *state) {
                       : o->photons > 0       ? "--photons"
                       : o->map_size > 0      ? "--map"
                                              : NULL;
-  if (o->pictures > 0 && scene != NULL)
+  if (looks_at_pictures(o) && scene != NULL)
     argp_error(state, "pictures are looked at without a scene: leave out %s", scene);
-  if (o->pictures == 0 && o->spectral.given)
+  if (!looks_at_pictures(o) && o->spectral.given)
     argp_error(state, "--observer, --lit-by and --illuminant are for pictures of bands");
 }
 
@@ -141,6 +150,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_SERVE:
     o->port = (int)abbe_command_count(o->program, "--serve", text, 0, 65535);
     return 0;
+  case OPTION_LISTEN:
+    o->listen = 14158;
+    if (text != NULL) o->listen = (int)abbe_command_count(o->program, "--listen", text, 0, 65535);
+    return 0;
   case OPTION_LAST:
     o->last = 1 + abbe_command_choice(o->program, "--last", text, stages, 5);
     return 0;
@@ -149,12 +162,12 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case ARGP_KEY_END:
     check_pictures(o, state);
-    if (o->scene == NULL && o->pictures == 0)
+    if (o->scene == NULL && !looks_at_pictures(o))
       argp_error(
           state,
           "which scene? Give a file such as scenes/gem.yaml, a stone's such as round.asc, or "
           "pictures such as bands.exr");
-    if (o->pictures == 0 && o->changes.studio.material != NULL && !abbe_studio_is_stone(o->scene))
+    if (!looks_at_pictures(o) && o->changes.studio.material != NULL && !abbe_studio_is_stone(o->scene))
       argp_error(state, "--material is for a stone's file; of a scene's object NAME it is --set "
                         "objects.NAME.material=STONE");
     if (o->script != NULL && o->port >= 0)
@@ -242,6 +255,15 @@ static abbe_result choose_spectrum(abbe_inspect *pictures, const view_options *o
   return result;
 }
 
+static abbe_result listen_for(const view_options *o, abbe_view_app_desc *desc, abbe_error *error) {
+  unsigned port = (unsigned)o->listen;
+  ABBE_TRY(abbe_inspect_await(desc->pictures, error));
+  ABBE_TRY(abbe_view_listen_begin(&port, &desc->listener, error));
+  printf("listens at 127.0.0.1:%u\n", port);
+  fflush(stdout);
+  return ABBE_OK;
+}
+
 /* What is wrong with a file is reported before there is a window. */
 static abbe_result view_pictures(view_options *o, abbe_error *error) {
   abbe_inspect *pictures = calloc(1, sizeof *pictures);
@@ -256,9 +278,11 @@ static abbe_result view_pictures(view_options *o, abbe_error *error) {
     if (p->space.assumed) abbe_command_note_space(o->picture[i]);
     if (p->note[0] != '\0') fprintf(stderr, "note: %s\n", p->note);
   }
-  const abbe_view_app_desc desc = {.pictures = pictures, .ocio = o->ocio};
+  abbe_view_app_desc desc = {.pictures = pictures, .ocio = o->ocio};
   if (result == ABBE_OK && o->spectral.given) result = choose_spectrum(pictures, o, error);
+  if (result == ABBE_OK && o->listen >= 0) result = listen_for(o, &desc, error);
   if (result == ABBE_OK) result = run(o, &desc, error);
+  abbe_view_listen_end(desc.listener);
   if (pictures != NULL) abbe_inspect_free(pictures);
   free(pictures);
   abbe_spectral_options_free(&o->spectral);
@@ -266,7 +290,7 @@ static abbe_result view_pictures(view_options *o, abbe_error *error) {
 }
 
 static abbe_result view(view_options *o, abbe_error *error) {
-  if (o->pictures > 0) return view_pictures(o, error);
+  if (looks_at_pictures(o)) return view_pictures(o, error);
   char shipped[2 * PATH_MAX];
   abbe_view_document document;
   abbe_scene scene = {0};
@@ -335,7 +359,7 @@ int abbe_command_view(int argc, char **argv) {
       NULL,
       NULL};
   view_options o = {
-      .program = argv[0], .spectral.program = argv[0], .width = 900, .height = 560, .port = -1};
+      .program = argv[0], .spectral.program = argv[0], .width = 900, .height = 560, .port = -1, .listen = -1};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &o);
   abbe_error error = {0};
   const abbe_result result = view(&o, &error);

@@ -24,7 +24,7 @@ abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc
                              .materials = desc->materials,
                              .volume_path = desc->volume_path,
                              .volume = desc->volume,
-                             .inspection = {.pictures = desc->pictures},
+                             .inspection = {.pictures = desc->pictures, .listener = desc->listener},
                              .judge = {.wake = desc->wake},
                              .seen_s = -1};
   if (desc->pictures != NULL) {
@@ -470,7 +470,8 @@ bool abbe_view_app_stopped(const abbe_view_session *app) {
 }
 
 bool abbe_view_app_painted(const abbe_view_session *app) {
-  if (app->inspection.pictures != NULL) return app->inspection.whole && !app->inspection.stale;
+  if (app->inspection.pictures != NULL) 
+    return app->inspection.whole && !app->inspection.stale && !app->inspection.more;
   return !is_stale(app);
 }
 

@@ -10,6 +10,23 @@
 #include "cli/view/view_session.h"
 #include "gl/device/context.h"
 
+/* Pictures over the network protocol of tev [Tev], from this machine alone (127.0.0.1): a thread
+ * receives what up to 8 programs send, in packets of up to 256 MiB, and closes the connection of
+ * what is no packet. */
+
+/* Listens at *port, 0: at a free one, which it becomes. ABBE_IO where it is taken, ABBE_NO_MEMORY;
+ * *out is to be ended then too. */
+abbe_result abbe_view_listen_begin(unsigned *port, abbe_view_listener **out, abbe_error *error);
+/* Begins to receive; wake may be NULL, and is called after each packet. */
+abbe_result abbe_view_listen_start(abbe_view_listener *listener, void (*wake)(void),
+                                   abbe_error *error);
+/* The next packet, malloc'd and not checked against any picture; of size 0 a sentence, or NULL: why
+ * a connection was closed. False: there is none. */
+bool abbe_view_listen_take(abbe_view_listener *listener, unsigned char **bytes, size_t *size);
+/* Nothing wakes any more. */
+void abbe_view_listen_stop(abbe_view_listener *listener);
+void abbe_view_listen_end(abbe_view_listener *listener);
+
 typedef struct abbe_view_app_desc {
   const abbe_view_document *document;
   const char *materials;             /* or NULL */
@@ -18,6 +35,7 @@ typedef struct abbe_view_app_desc {
   const char *volume_path;           /* or NULL; what it holds: */
   const abbe_caustic_volume *volume; /* that caustics are looked up in, for as long as it runs */
   abbe_inspect *pictures; /* instead of a document; NULL: none. They outlive the viewer */
+  abbe_view_listener *listener; /* of pictures; or NULL */
   abbe_view_stage last;   /* where refining ends; NONE: nowhere */
   void (*wake)(void);     /* or NULL */
 } abbe_view_app_desc;
@@ -95,9 +113,6 @@ abbe_result abbe_view_inspect_begin(abbe_view_session *session, abbe_error *erro
 void abbe_view_inspect_end(abbe_view_session *session);
 void abbe_view_inspect_key(abbe_view_session *session, int key);
 void abbe_view_inspect_frame(abbe_view_session *session, const abbe_ui_input *input);
-/* A value by its name, as abbe_view_session_value. */
-bool abbe_view_inspect_value(const abbe_view_session *session, const char *name, char *out,
-                             size_t size);
 
 /* The turntable of the viewer: pictures from all around, kept as PNG, and one PNG that moves. */
 

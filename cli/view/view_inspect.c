@@ -45,11 +45,15 @@ abbe_result abbe_view_inspect_begin(abbe_view_session *app, abbe_error *error) {
   if (result == ABBE_OK)
     result = abbe_view_session_choose_view(
         app, first_view(app->views, i->pictures->picture[i->at].encoded), error);
-  return result == ABBE_OK ? abbe_ui_make(error) : result;
+  if (result == ABBE_OK) result = abbe_ui_make(error);
+  if (result == ABBE_OK && i->listener != NULL)
+    result = abbe_view_listen_start(i->listener, app->judge.wake, error);
+  return result;
 }
 
 void abbe_view_inspect_end(abbe_view_session *app) {
   inspection *i = &app->inspection;
+  if (i->listener != NULL) abbe_view_listen_stop(i->listener);
   for (int k = 0; k < 2; k++) {
     abbe_inspect_probe_free(&i->probe[k]);
     abbe_illuminant_free(&i->made[k]);
@@ -104,6 +108,43 @@ static void go_to(inspection *i, size_t at) {
   if (from->width != to->width || from->height != to->height) i->pictures->zoom = 0;
   i->at = at;
   i->stale = true;
+}
+
+/* Takes what other programs have sent, for a while. */
+static void receive(abbe_view_session *app) {
+  inspection *i = &app->inspection;
+  abbe_inspect *s = i->pictures;
+  const double until = abbe_clock_seconds() + TILES_S;
+  char said[sizeof app->note] = "";
+  unsigned char *bytes;
+  size_t size;
+  while (i->listener != NULL && abbe_clock_seconds() < until &&
+         abbe_view_listen_take(i->listener, &bytes, &size)) {
+    abbe_error error = {0};
+    size_t focus = SIZE_MAX;
+    if (i->at != s->at) update(app);
+    const char *before = s->picture[s->at].own;
+    if (size == 0)
+      snprintf(said, sizeof said, "%s", bytes != NULL ? (const char *)bytes : "no memory");
+    else
+      abbe_inspect_take_packet(s, bytes, size, &focus, &error);
+    abbe_inspect_await(s, &error);
+    if (error.code != ABBE_OK) snprintf(said, sizeof said, "%s", error.text);
+    free(bytes);
+    i->received++;
+    i->stale = true;
+    i->at = s->at;
+    if (s->picture[s->at].own != before) { /* it is another one */
+      i->look.entry = 0;
+      i->look.difference = i->picked = false;
+      s->zoom = 0;
+    }
+    if (focus < s->count) go_to(i, focus);
+  }
+  i->more = i->listener != NULL && abbe_clock_seconds() >= until;
+  if (said[0] == '\0') return;
+  update(app);
+  snprintf(app->note, sizeof app->note, "%s", said);
 }
 
 void abbe_view_inspect_key(abbe_view_session *app, int key) {
@@ -438,6 +479,7 @@ void abbe_view_inspect_frame(abbe_view_session *app, const abbe_ui_input *input)
   const double width = floor(input->width - panel), height = floor(input->height);
   const bool room = width >= 16 && height >= 16;
   const size_t size[2] = {room ? (size_t)width : 0, room ? (size_t)height : 0};
+  receive(app);
   if (room && i->pictures->zoom > 0) feed(app, input, size);
   update(app);
   app->input = *input;
@@ -451,47 +493,4 @@ void abbe_view_inspect_frame(abbe_view_session *app, const abbe_ui_input *input)
   abbe_ui_panel_end();
   abbe_ui_end();
   time_frame(app);
-}
-
-bool abbe_view_inspect_value(const abbe_view_session *app, const char *name, char *out,
-                             size_t size) {
-  const inspection *i = &app->inspection;
-  const abbe_inspect *s = i->pictures;
-  const abbe_inspect_picture *p = shown_of(i);
-  const abbe_inspect_probe *q = &i->probe[0];
-  const struct {
-    const char *name;
-    double value;
-  } numbers[] = {{"first", app->first_s},
-                 {"rate", abbe_view_session_rate(app)},
-                 {"width", (double)p->width},
-                 {"height", (double)p->height},
-                 {"bands", (double)p->bands.count},
-                 {"pixels", (double)q->pixels},
-                 {"infinite", (double)p->odd.infinite},
-                 {"nan", (double)p->odd.nan},
-                 {"zoom", s->zoom},
-                 {"exposure", s->look.exposure},
-                 {"wavelength", s->look.wavelength_nm},
-                 {"least", p->least_shown},
-                 {"most", p->most_shown},
-                 {"dominant", q->dominant_nm},
-                 {"purity", q->purity},
-                 {"x", q->xy[0]},
-                 {"y", q->xy[1]},
-                 {"Y", q->unit > 0 ? q->unit * q->xyz[1] : q->xyz[1]}};
-  const struct {
-    const char *name, *text;
-  } texts[] = {{"picture", p->path}, {"shown", p->name[s->look.entry]}, {"note", app->note}};
-  for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
-    if (strcmp(name, numbers[k].name) == 0)
-      return abbe_number_format(out, size, "%.10g", numbers[k].value) > 0;
-  for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
-    if (strcmp(name, texts[k].name) == 0) return snprintf(out, size, "%s", texts[k].text) >= 0;
-  /* mean:CHANNEL, error:CHANNEL, deviation:CHANNEL of the pixel or region */
-  const char *colon = strchr(name, ':');
-  const size_t c = colon != NULL ? abbe_image_find_channel(&p->image, colon + 1) : (size_t)-1;
-  if (c == (size_t)-1 || q->mean == NULL) return false;
-  const double v = name[0] == 'm' ? q->mean[c] : name[0] == 'e' ? q->error[c] : q->deviation[c];
-  return abbe_number_format(out, size, "%.10g", v) > 0;
 }

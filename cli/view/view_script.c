@@ -283,8 +283,8 @@ static int stage_of(const char *name) {
 }
 
 static bool is_awaited(const char *what) {
-  static const char *const others[] = {"rest",      "stopped", "refusal", "changed",
-                                       "turntable", "feed",    "spectrum"};
+  static const char *const others[] = {"rest",      "stopped", "refusal",  "changed",
+                                       "turntable", "feed",    "spectrum", "sent"};
   bool is = stage_of(what) < ABBE_VIEW_STAGE_COUNT;
   for (size_t i = 0; i < sizeof others / sizeof *others; i++) is = is || !strcmp(what, others[i]);
   return is;
@@ -297,6 +297,8 @@ static bool has_come(script *s, const char *what) {
   if (strcmp(what, "refusal") == 0) return v->state.refusal[0] != '\0';
   if (strcmp(what, "changed") == 0) return v->state.refine.serial != s->copied;
   if (strcmp(what, "turntable") == 0) return v->turned && v->turn_frame == 0;
+  if (strcmp(what, "sent") == 0)
+    return v->inspection.received >= (s->words > 2 ? strtoul(s->word[2], NULL, 10) : 1);
   if (strcmp(what, "feed") == 0) return abbe_view_session_feed(v) != NULL;
   if (strcmp(what, "spectrum") == 0) return v->probe.bands > 0 || v->inspection.picked;
   const int stage = stage_of(what);
@@ -322,7 +324,8 @@ static abbe_result do_wait(script *s, abbe_error *error) {
   const clock_t begun = clock();
   for (double busy_s = start; !has_come(s, what); pump(s)) {
     const double now = abbe_clock_seconds();
-    if (!abbe_view_app_rests(&s->hidden.session, now)) busy_s = now;
+    const bool listens = s->hidden.session.inspection.listener != NULL && now - start < PATIENCE_S;
+    if (listens || !abbe_view_app_rests(&s->hidden.session, now)) busy_s = now;
     const bool late = (double)(clock() - begun) / CLOCKS_PER_SEC > PATIENCE_S;
     if (late || now - busy_s > REST_S)
       return fail(
@@ -403,6 +406,7 @@ static abbe_result do_say(script *s, abbe_error *error) {
     ABBE_TRY(value_of(s, s->word[i], value, error));
     printf("%s %s\n", s->word[i], value);
   }
+  fflush(stdout); /* somebody may wait for it */
   return ABBE_OK;
 }
 

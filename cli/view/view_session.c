@@ -207,3 +207,48 @@ bool abbe_view_session_value(const abbe_view_session *session, const char *name,
   const char *set = abbe_view_document_value(now, name);
   return set != NULL && snprintf(out, size, "%s", set) >= 0;
 }
+
+bool abbe_view_inspect_value(const abbe_view_session *app, const char *name, char *out,
+                             size_t size) {
+  const abbe_view_inspection *i = &app->inspection;
+  const abbe_inspect *s = i->pictures;
+  const abbe_inspect_picture *p = &s->picture[s->at];
+  const abbe_inspect_probe *q = &i->probe[0];
+  const struct {
+    const char *name;
+    double value;
+  } numbers[] = {{"first", app->first_s},
+                 {"rate", abbe_view_session_rate(app)},
+                 {"width", (double)p->width},
+                 {"height", (double)p->height},
+                 {"bands", (double)p->bands.count},
+                 {"pictures", (double)s->count},
+                 {"received", (double)i->received},
+                 {"pixels", (double)q->pixels},
+                 {"infinite", (double)p->odd.infinite},
+                 {"nan", (double)p->odd.nan},
+                 {"zoom", s->zoom},
+                 {"exposure", s->look.exposure},
+                 {"wavelength", s->look.wavelength_nm},
+                 {"least", p->least_shown},
+                 {"most", p->most_shown},
+                 {"dominant", q->dominant_nm},
+                 {"purity", q->purity},
+                 {"x", q->xy[0]},
+                 {"y", q->xy[1]},
+                 {"Y", q->unit > 0 ? q->unit * q->xyz[1] : q->xyz[1]}};
+  const struct {
+    const char *name, *text;
+  } texts[] = {{"picture", p->path}, {"shown", p->name[s->look.entry]}, {"note", app->note}};
+  for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+    if (strcmp(name, numbers[k].name) == 0)
+      return abbe_number_format(out, size, "%.10g", numbers[k].value) > 0;
+  for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
+    if (strcmp(name, texts[k].name) == 0) return snprintf(out, size, "%s", texts[k].text) >= 0;
+  /* mean:CHANNEL, error:CHANNEL, deviation:CHANNEL of the pixel or region */
+  const char *colon = strchr(name, ':');
+  const size_t c = colon != NULL ? abbe_image_find_channel(&p->image, colon + 1) : (size_t)-1;
+  if (c == (size_t)-1 || q->mean == NULL) return false;
+  const double v = name[0] == 'm' ? q->mean[c] : name[0] == 'e' ? q->error[c] : q->deviation[c];
+  return abbe_number_format(out, size, "%.10g", v) > 0;
+}

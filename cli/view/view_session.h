@@ -32,9 +32,14 @@ typedef struct abbe_view_desk {
   double waited_ms;   /* and how long it had waited for the next one to be wanted */
 } abbe_view_desk;
 
+typedef struct abbe_view_listener abbe_view_listener;
+
 /* Pictures that are looked at, and by which hand. */
 typedef struct abbe_view_inspection {
   abbe_inspect *pictures; /* NULL: a scene is shown instead */
+  abbe_view_listener *listener; /* of other pictures; or NULL */
+  size_t received;              /* packets of them */
+  bool more;                    /* some may wait */
   abbe_inspect_look look; /* as it is wished, of picture `at`; */
   size_t at;
   bool stale, whole; /* it is not shown yet; no tile is missing */
@@ -152,6 +157,9 @@ double abbe_view_session_rate(const abbe_view_session *session);
 /* A value by its name, for scripts (docs/view.md lists them), or what a key was set to. False:
  * there is none. */
 bool abbe_view_session_value(const abbe_view_session *session, const char *name, char *out,
+                             size_t size);
+/* The same of pictures that are looked at. */
+bool abbe_view_inspect_value(const abbe_view_session *session, const char *name, char *out,
                              size_t size);
 /* What feeds the pixel that is picked, where that is known; else NULL. */
 const abbe_view_feed *abbe_view_session_feed(const abbe_view_session *session);

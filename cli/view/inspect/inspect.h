@@ -64,6 +64,9 @@ typedef struct abbe_inspect_level {
 
 typedef struct abbe_inspect_picture {
   const char *path;
+  char *own;            /* the path, where it is the picture's; or NULL */
+  bool sent;            /* it is no file: another program sends it */
+  bool changed;         /* since it was shown */
   size_t width, height; /* of the picture; */
   size_t coarse;        /* level of it that is in memory, of half the side each; 0: all of it */
   abbe_image image;     /* that level */
@@ -102,11 +105,28 @@ typedef struct abbe_inspect {
   double zoom;      /* pixels of the screen for one of the image */
 } abbe_inspect;
 
-/* Reads a picture behind the others; path stays the caller's. Errors of abbe_picture_file_read,
+/* Reads a picture behind the others. Errors of abbe_picture_file_read,
  * abbe_png_read, abbe_avif_read and abbe_spectral_channels_find; ABBE_UNSUPPORTED for other kinds,
  * ABBE_OUT_OF_RANGE for one picture too many. */
 abbe_result abbe_inspect_open(abbe_inspect *inspect, const char *path, abbe_error *error);
+/* Makes a black one of that width, height and channels behind the others, for ABBE_NO_MEMORY,
+ * ABBE_OUT_OF_RANGE as above; errors of abbe_image_make and abbe_spectral_channels_find. */
+abbe_result abbe_inspect_create(abbe_inspect *inspect, const char *name, const size_t size[3],
+                                const char *const *channel, abbe_error *error);
+/* Takes a picture out; those behind it move up. Where it was shown, another one is. */
+void abbe_inspect_close(abbe_inspect *inspect, size_t at);
+/* One that says that nothing has been sent stands where there is none, until there is. */
+abbe_result abbe_inspect_await(abbe_inspect *inspect, abbe_error *error);
 void abbe_inspect_free(abbe_inspect *inspect);
+
+/* Does what a packet of tev's protocol [Tev] says, whose first four bytes are its length: opens,
+ * reads again, creates, updates or closes a picture; *focus becomes which one is to be shown, if it
+ * says so. NULL for inspect: it is only checked, and focus may be NULL. ABBE_PARSE for what is no
+ * packet. Of one that is: errors of abbe_inspect_open and abbe_inspect_create, ABBE_NOT_FOUND for a
+ * picture or a channel that is not there, ABBE_OUT_OF_RANGE for pixels that are not and for created
+ * pictures of more than 1 GiB together, ABBE_UNSUPPORTED for drawings. */
+abbe_result abbe_inspect_take_packet(abbe_inspect *inspect, const unsigned char *bytes, size_t size,
+                                     size_t *focus, abbe_error *error);
 
 /* Shows picture `at` with that look, whose entry is one of the picture that was shown: of another
  * picture that of the same name, or its first one. Nothing is converted yet; tiles that are there
@@ -180,5 +200,7 @@ void abbe_inspect_mix_at(const abbe_inspect_mix *mix, const abbe_inspect_picture
                          const float *pixel, double out[3]);
 bool abbe_inspect_is_colour(abbe_inspect_kind kind);
 void abbe_inspect_tiles_free(abbe_inspect_picture *picture);
+/* Pixels of a picture in that window have changed: what is shown of them is made anew. */
+void abbe_inspect_touch(abbe_inspect *inspect, size_t at, const size_t window[4]);
 
 #endif

@@ -248,19 +248,29 @@ static void free_picture(abbe_inspect_picture *p) {
   abbe_image_free(&p->image);
   free(p->entry);
   free(p->name);
+  free(p->own);
   *p = (abbe_inspect_picture){0};
 }
 
-abbe_result abbe_inspect_open(abbe_inspect *inspect, const char *path, abbe_error *error) {
-  if (inspect->count == ABBE_INSPECT_MOST_PICTURES)
-    return abbe_error_set(error, ABBE_OUT_OF_RANGE, "%s: at most %d pictures are looked at at once",
-                          path, ABBE_INSPECT_MOST_PICTURES);
-  abbe_inspect_picture *p = &inspect->picture[inspect->count];
-  *p = (abbe_inspect_picture){.path = path};
-  const size_t most = inspect->most_numbers > 0 ? inspect->most_numbers : ABBE_INSPECT_MOST_NUMBERS;
-  abbe_result result = read_image(path, most, p, error);
+static const char waiting[] = "waiting for pictures";
+
+static abbe_result begin_picture(abbe_inspect *s, const char *path, abbe_inspect_picture **out,
+                                 abbe_error *error) {
+  if (s->count == ABBE_INSPECT_MOST_PICTURES)
+    return abbe_error_set(error, ABBE_OUT_OF_RANGE,
+                          "%s: at most %d pictures are looked at at once", path,
+                          ABBE_INSPECT_MOST_PICTURES);
+  abbe_inspect_picture *p = *out = &s->picture[s->count];
+  *p = (abbe_inspect_picture){.own = strdup(path)};
+  p->path = p->own;
+  return p->own != NULL ? ABBE_OK
+                        : abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", path);
+}
+
+static abbe_result end_picture(abbe_inspect *s, abbe_inspect_picture *p, abbe_result result,
+                               abbe_error *error) {
   if (result == ABBE_OK)
-    result = abbe_spectral_channels_find(&p->image, NULL, path, &p->bands, error);
+    result = abbe_spectral_channels_find(&p->image, NULL, p->path, &p->bands, error);
   if (result == ABBE_OK) result = rename_bands(p, error);
   if (result == ABBE_OK) result = list_entries(p, error);
   if (result != ABBE_OK) {
@@ -268,9 +278,45 @@ abbe_result abbe_inspect_open(abbe_inspect *inspect, const char *path, abbe_erro
     return result;
   }
   look_for_odd(p);
-  if (inspect->count == 1) inspect->other = 1;
-  inspect->count++;
+  if (s->count == 1) s->other = 1;
+  s->count++;
+  if (s->count > 1 && strcmp(s->picture[0].path, waiting) == 0) abbe_inspect_close(s, 0);
   return ABBE_OK;
+}
+
+abbe_result abbe_inspect_open(abbe_inspect *s, const char *path, abbe_error *error) {
+  const size_t most = s->most_numbers > 0 ? s->most_numbers : ABBE_INSPECT_MOST_NUMBERS;
+  abbe_inspect_picture *p = NULL;
+  ABBE_TRY(begin_picture(s, path, &p, error));
+  return end_picture(s, p, read_image(p->path, most, p, error), error);
+}
+
+abbe_result abbe_inspect_create(abbe_inspect *s, const char *name, const size_t size[3],
+                                const char *const *channel, abbe_error *error) {
+  abbe_inspect_picture *p = NULL;
+  ABBE_TRY(begin_picture(s, name, &p, error));
+  p->sent = true;
+  p->width = size[0];
+  p->height = size[1];
+  return end_picture(
+      s, p, abbe_image_make(size[0], size[1], size[2], channel, &p->image, error), error);
+}
+
+abbe_result abbe_inspect_await(abbe_inspect *s, abbe_error *error) {
+  static const char *const names[] = {"Y"};
+  if (s->count > 0) return ABBE_OK;
+  return abbe_inspect_create(s, waiting, (const size_t[3]){16, 16, 1}, names, error);
+}
+
+void abbe_inspect_close(abbe_inspect *s, size_t at) {
+  free_picture(&s->picture[at]);
+  s->count--;
+  memmove(&s->picture[at], &s->picture[at + 1], (s->count - at) * sizeof *s->picture);
+  s->picture[s->count] = (abbe_inspect_picture){0};
+  if (s->at == at) s->look = (abbe_inspect_look){.exposure = s->look.exposure, .view = s->look.view};
+  if (s->at > at || s->at == s->count) s->at -= s->at > 0;
+  if (s->other > at || s->other == s->count) s->other -= s->other > 0;
+  for (size_t i = 0; i < s->count; i++) s->picture[i].look.display = NULL;
 }
 
 void abbe_inspect_free(abbe_inspect *inspect) {

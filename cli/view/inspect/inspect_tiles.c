@@ -9,6 +9,7 @@
 #include <string.h>
 
 enum { SIDE = 64, SAMPLES = 256 * 256 };
+enum { BYTES = 4 * SIDE * SIDE }; /* of a tile; the byte behind says that it shows what was */
 #define LOWEST (-10.0) /* stops of the histogram of colours, from 0.18 */
 #define HIGHEST 6.0
 #define MOST_ZOOM 64.0
@@ -174,8 +175,9 @@ abbe_result abbe_inspect_show(abbe_inspect *s, size_t at, const abbe_inspect_loo
   p->look = s->look = own;
   p->other = s->other;
   s->at = at;
-  if (same) return ABBE_OK;
-  abbe_inspect_tiles_free(p);
+  if (same && !p->changed) return ABBE_OK;
+  if (!same) abbe_inspect_tiles_free(p);
+  p->changed = false;
   return measure(s, p, error);
 }
 
@@ -285,6 +287,28 @@ static abbe_result begin_level(abbe_inspect_picture *p, size_t l, abbe_error *er
   return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its tiles", p->path);
 }
 
+/* All tiles where what others look like depends on it. */
+static void touch(abbe_inspect_picture *p, const size_t window[4]) {
+  const bool all = !abbe_inspect_is_colour(p->mix.kind) || p->look.difference;
+  p->changed = true;
+  for (size_t l = 0; l < ABBE_INSPECT_LEVELS; l++) {
+    const abbe_inspect_level *level = &p->level[l];
+    for (size_t i = 0; level->tile != NULL && i < level->across * level->down; i++) {
+      const size_t x = (i % level->across * SIDE) << l, y = (i / level->across * SIDE) << l;
+      const size_t side = (size_t)SIDE << l;
+      const bool apart = x > window[2] || y > window[3] || x + side <= window[0] ||
+                         y + side <= window[1];
+      if (level->tile[i] != NULL && (all || !apart)) level->tile[i][BYTES] = true;
+    }
+  }
+}
+
+void abbe_inspect_touch(abbe_inspect *s, size_t at, const size_t window[4]) {
+  for (size_t i = 0; i < s->count; i++)
+    if (i == at || (s->picture[i].look.difference && s->picture[i].other == at))
+      touch(&s->picture[i], window);
+}
+
 /* Makes those from tile `from` to `to` that are not there, until the time is over. */
 static abbe_result make_tiles(const abbe_inspect *s, abbe_inspect_picture *p, size_t l,
                               const size_t from[2], const size_t to[2], double seconds, bool *whole,
@@ -296,10 +320,10 @@ static abbe_result make_tiles(const abbe_inspect *s, abbe_inspect_picture *p, si
   for (size_t y = from[1]; y <= to[1]; y++)
     for (size_t x = from[0]; x <= to[0]; x++) {
       unsigned char **tile = &level->tile[y * level->across + x];
-      if (*tile != NULL) continue;
+      if (*tile != NULL && !(*tile)[BYTES]) continue;
       *whole = !one || abbe_clock_seconds() < until;
       if (!*whole) return ABBE_OK;
-      *tile = malloc((size_t)4 * SIDE * SIDE);
+      if (*tile == NULL) *tile = malloc(BYTES + 1);
       abbe_result result = *tile != NULL ? make_tile(s, p, l, (const size_t[2]){x, y}, *tile, error)
                                          : abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
       if (result != ABBE_OK) {
@@ -307,6 +331,7 @@ static abbe_result make_tiles(const abbe_inspect *s, abbe_inspect_picture *p, si
         *tile = NULL;
         return result;
       }
+      (*tile)[BYTES] = false;
       one = true;
     }
   return ABBE_OK;

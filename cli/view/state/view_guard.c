@@ -17,20 +17,21 @@ enum { LINE_BYTES = 2048, AT_ONCE = 64, LISTENS = ABBE_VIEW_GUARD_WAITING };
 static const char refusal[] =
     "the token is missing or another; the viewer has printed the whole address";
 
-static abbe_result listen_at(abbe_view_guard *g, unsigned port, abbe_error *error) {
+abbe_result abbe_view_guard_listen(unsigned *port, int *out, abbe_error *error) {
   const int yes = 1;
-  struct sockaddr_in place = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)};
+  struct sockaddr_in place = {.sin_family = AF_INET, .sin_port = htons((uint16_t)*port)};
   socklen_t size = sizeof place;
   place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  setsockopt(g->listening, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  if (bind(g->listening, (struct sockaddr *)&place, sizeof place) != 0 ||
-      listen(g->listening, SOMAXCONN) != 0 ||
-      getsockname(g->listening, (struct sockaddr *)&place, &size) != 0)
+  *out = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (*out < 0) return abbe_error_set(error, ABBE_IO, "no socket to listen: %s", strerror(errno));
+  setsockopt(*out, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  if (bind(*out, (struct sockaddr *)&place, sizeof place) != 0 || listen(*out, SOMAXCONN) != 0 ||
+      getsockname(*out, (struct sockaddr *)&place, &size) != 0)
     return abbe_error_set(error, ABBE_IO,
                           "port %u of 127.0.0.1 cannot be served, it may be in use; choose "
                           "another, or 0 for any",
-                          port);
-  g->port = ntohs(place.sin_port);
+                          *port);
+  *port = ntohs(place.sin_port);
   return ABBE_OK;
 }
 
@@ -42,11 +43,12 @@ static int watch(const abbe_view_guard *g, int socket, size_t place, unsigned ho
 abbe_result abbe_view_guard_begin(abbe_view_guard *g, unsigned port, abbe_error *error) {
   pthread_mutex_init(&g->lock, NULL);
   for (size_t i = 0; i < ABBE_VIEW_GUARD_WAITING; i++) g->waiting[i].socket = -1;
-  g->listening = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  g->listening = -1;
   g->epoll = epoll_create1(EPOLL_CLOEXEC);
-  if (g->listening < 0 || g->epoll < 0)
+  if (g->epoll < 0)
     return abbe_error_set(error, ABBE_IO, "no socket for the page: %s", strerror(errno));
-  const abbe_result result = listen_at(g, port, error);
+  g->port = port;
+  const abbe_result result = abbe_view_guard_listen(&g->port, &g->listening, error);
   if (result == ABBE_OK && watch(g, g->listening, LISTENS, EPOLLIN) != 0)
     return abbe_error_set(error, ABBE_IO, "no socket for the page: %s", strerror(errno));
   return result;

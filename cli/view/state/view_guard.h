@@ -37,6 +37,9 @@ typedef struct abbe_view_guard {
 /* Listens at that port of 127.0.0.1, 0: any free one; token, enter and user are given, all else is
  * 0. ABBE_IO where the port is taken. */
 abbe_result abbe_view_guard_begin(abbe_view_guard *guard, unsigned port, abbe_error *error);
+/* A socket that listens at that port of 127.0.0.1 and does not wait; the caller closes it, also
+ * after an error where it is not below 0. *port 0 becomes a free one. ABBE_IO as above. */
+abbe_result abbe_view_guard_listen(unsigned *port, int *socket, abbe_error *error);
 /* Waits for connections and what they bring for so many seconds at most, and does with it what is
  * right; ends those that have waited too long. */
 void abbe_view_guard_look(abbe_view_guard *guard, double seconds);
