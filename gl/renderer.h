@@ -55,6 +55,10 @@ void abbe_renderer_free(abbe_renderer *renderer);
 abbe_result abbe_renderer_change(abbe_renderer *renderer, const abbe_scene *scene,
                                  const abbe_render_desc *desc, abbe_error *error);
 
+/* Gives memory back that only the next frame that follows photons needs, which then takes it
+ * again: where frames end for a while. */
+void abbe_renderer_rest(abbe_renderer *renderer);
+
 /* The next frame runs every pass, whatever could be kept: to measure it. */
 void abbe_renderer_redraw(abbe_renderer *renderer);
 

@@ -260,6 +260,14 @@ abbe_result abbe_renderer_change(abbe_renderer *r, const abbe_scene *scene,
   return abbe_renderer_leave(r->context, change_watched(r, scene, desc, error));
 }
 
+void abbe_renderer_rest(abbe_renderer *r) {
+  if (abbe_renderer_enter(r->context, NULL) != ABBE_OK) return;
+  r->gpu.gl->Finish();
+  abbe_caustics_rest(&r->caustics);
+  abbe_buffer_memory_shrink(&r->gpu.memory);
+  abbe_renderer_leave(r->context, ABBE_OK);
+}
+
 void abbe_renderer_redraw(abbe_renderer *r) {
   r->lit = r->seen = r->refraction.whole = false;
   abbe_transports_redraw(&r->transports);

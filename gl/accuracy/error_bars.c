@@ -353,6 +353,7 @@ abbe_result abbe_error_bars_make(abbe_context *context, const abbe_scene *scene,
                             "caustics of a volume are the same with other photons, so they have no "
                             "error bars; 'abbe volume' tells how noisy they are");
   if (result == ABBE_OK) result = begin(&w, renderer, variants, error);
+  if (result == ABBE_OK) abbe_renderer_rest(renderer); /* the variants have one of their own */
   if (result == ABBE_OK) result = draw_variants(&w, variants, error);
   if (result == ABBE_OK && w.frames > variants) {
     abbe_render_desc request;

@@ -375,6 +375,15 @@ abbe_result abbe_caustics_run(abbe_caustics *c, double *untimed_ms, abbe_error *
   return result;
 }
 
+void abbe_caustics_rest(abbe_caustics *c) {
+  if (c->views == NULL) return;
+  const abbe_hits *hits[] = {&c->trace.hits, &c->refine.hits};
+  for (size_t i = 0; i < sizeof hits / sizeof *hits; i++) {
+    abbe_buffer_memory_forget(&c->views->scene->gpu->memory, hits[i]->hits);
+    abbe_buffer_memory_forget(&c->views->scene->gpu->memory, hits[i]->signatures);
+  }
+}
+
 bool abbe_caustics_know_energy(const abbe_caustics *c) {
   return c->energy_known;
 }

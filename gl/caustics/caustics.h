@@ -45,6 +45,10 @@ void abbe_caustics_free(abbe_caustics *caustics);
  * grows by what reading that took. ABBE_CANCELLED, ABBE_GL. */
 abbe_result abbe_caustics_run(abbe_caustics *caustics, double *untimed_ms, abbe_error *error);
 
+/* Gives back the memory of the last run's hits, where it is the process's own: the next run writes
+ * them anew. The device has finished with them. */
+void abbe_caustics_rest(abbe_caustics *caustics);
+
 /* Where the light went in the last run, of lights as they are now. Known where that run had
  * statistics. */
 bool abbe_caustics_know_energy(const abbe_caustics *caustics);

@@ -57,6 +57,7 @@ static abbe_result make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLu
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);
   } else {
     ABBE_TRY(abbe_gl_check(gl, "what came before a buffer was allocated", error));
+    if (room >= ABBE_MEMORY_LARGE) abbe_gpu_trim(gpu);
     result = allocate_buffer(gpu, room, out, error);
     if (result == ABBE_NO_MEMORY) {
       abbe_gpu_make_way(gpu);

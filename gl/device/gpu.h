@@ -79,7 +79,8 @@ size_t abbe_gpu_store_count(const abbe_gpu_store *store, abbe_stored_kind kind);
  * the pages come as they are used, and stay for the next buffer. */
 
 #define ABBE_MEMORY_LEAST ((size_t)1 << 20)    /* bytes of a buffer that is large */
-#define ABBE_MEMORY_UNUSED ((size_t)512 << 20) /* bytes that stay for the next, at the most */
+#define ABBE_MEMORY_UNUSED ((size_t)128 << 20) /* bytes that stay for the next, at the most */
+#define ABBE_MEMORY_LARGE ((size_t)64 << 20)   /* of one before which what is unused goes */
 #define ABBE_MEMORY_BLOCKS 48
 
 typedef struct abbe_memory_block {
@@ -106,6 +107,9 @@ void abbe_buffer_memory_sweep(abbe_buffer_memory *memory, const abbe_gl *gl,
                               const abbe_gpu_store *store);
 /* What nobody has goes back to the system. */
 void abbe_buffer_memory_shrink(abbe_buffer_memory *memory);
+/* So do the pages of what the buffer has, which stays and then holds zeros; the device has finished
+ * with it. Nothing happens to a buffer of OpenGL's own. */
+void abbe_buffer_memory_forget(abbe_buffer_memory *memory, GLuint buffer);
 /* So does all; after its buffers. */
 void abbe_buffer_memory_free(abbe_buffer_memory *memory);
 

@@ -86,6 +86,13 @@ void abbe_buffer_memory_shrink(abbe_buffer_memory *memory) {
     if (memory->block[i].at != NULL && memory->block[i].buffer == 0) give_back(&memory->block[i]);
 }
 
+void abbe_buffer_memory_forget(abbe_buffer_memory *memory, GLuint buffer) {
+  for (size_t i = 0; i < ABBE_MEMORY_BLOCKS && buffer != 0; i++) {
+    const abbe_memory_block *b = &memory->block[i];
+    if (b->buffer == buffer) madvise(b->at, b->size, MADV_DONTNEED);
+  }
+}
+
 void abbe_buffer_memory_free(abbe_buffer_memory *memory) {
   for (size_t i = 0; i < ABBE_MEMORY_BLOCKS; i++)
     if (memory->block[i].at != NULL) give_back(&memory->block[i]);

@@ -35,16 +35,21 @@ TEST(a_frame_can_be_stopped_and_drawn_again) {
   assert_picture_again(renderer, &before);
 }
 
-TEST(the_baseline_leaves_the_picture) {
+TEST(the_baseline_and_a_rest_leave_the_picture) {
   for (size_t samples = 1; samples <= 2; samples++) {
     double ms = 0;
     OWNED(abbe_scene, scene) = shipped_scene("sphere");
-    const abbe_render_desc desc = FIELDS(.width = 32, .height = 32, .photons = 32, .map_size = 64,
+    const abbe_render_desc desc = FIELDS(.width = 32, .height = 32, .photons = 64, .map_size = 64,
                                          .wavelengths = 3, .supersample = samples);
     HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
     OWNED(abbe_image, before) = picture_of(renderer);
     OK(abbe_renderer_baseline(renderer, &ms, &error));
     assert_true(ms > 0);
+    assert_picture_again(renderer, &before);
+    abbe_renderer_rest(renderer);
+    assert_picture_again(renderer, &before);
+    abbe_renderer_redraw(renderer);
+    draw_frame(renderer);
     assert_picture_again(renderer, &before);
   }
 }

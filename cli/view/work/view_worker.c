@@ -218,6 +218,7 @@ static abbe_result draw(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
                                  moving ? NULL : &out->statistics, error);
   if (result == ABBE_OK) result = abbe_renderer_read(w->renderer, !moving, &out->picture, error);
   if (result != ABBE_OK) return result;
+  if (q->job.stage == ABBE_VIEW_ACCURATE) abbe_renderer_rest(w->renderer);
   const abbe_plan *plan = abbe_renderer_plan(w->renderer);
   const abbe_preset_point *point = abbe_view_settings_point(&w->front, q->job.stage);
   out->desc = plan->desc;

@@ -65,6 +65,10 @@ TEST(what_comes_back_is_lent_again) {
   const void *first = given;
   assert_int_equal((size_t)first % 4096, 0);
   memset((void *)(size_t)first, 1, size + 4096); /* and some beyond */
+  abbe_buffer_memory_forget(&m, 8);              /* nobody's */
+  assert_int_equal(*(const char *)first, 1);
+  abbe_buffer_memory_forget(&m, 7);
+  assert_int_equal(*(const char *)first, 0);
   add(&store, 7, size);
   waits = 0;
   abbe_buffer_memory_sweep(&m, &gl, &store); /* it is in use */
