@@ -114,9 +114,10 @@ static abbe_result value_so_far(const abbe_tracer *tracer, const abbe_known_sett
     double value;
   } ledger[] = {{"turned", l->turned / l->reached},
                 {"yield", l->quanta[1] / l->quanta[0]},
+                {"deposited", l->deposited / l->reached},
                 {"closed", (l->deposited + l->absorbed + l->missed + l->lost + l->excited) /
                                (l->reached + l->glowing)}};
-  for (int i = 0; i < 3; i++) {
+  for (size_t i = 0; i < sizeof ledger / sizeof *ledger; i++) {
     if (strcmp(s->channel, ledger[i].channel) != 0) continue;
     *value = ledger[i].value;
     return ABBE_OK;

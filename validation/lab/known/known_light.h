@@ -46,7 +46,8 @@ typedef struct abbe_known_setting {
   bool once;             /* a medium scatters light once (physics.h) */
   const char *channel;   /* whose mean over the picture is known; NULL: the flux that was met, W;
                             "turned": the share of it that refractors' haze has scattered; "yield":
-                            photons emitted by photon taken; "closed": what came out of all that came
+                            photons emitted by photon taken; "deposited": the share of it that
+                            receivers met; "closed": what came out of all that came
                             in and glowed */
   double (*weight)(double x, double y); /* weight of a pixel whose middle lies there, the picture
                                            reaching from -1 to 1 both ways, y up; NULL: 1 */

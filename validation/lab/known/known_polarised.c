@@ -6,8 +6,10 @@
 #include "validation/lab/known/forms/closed_form.h"
 #include "validation/lab/known/known_light.h"
 
+#include <complex.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #define FIRST 0.5 /* the panes' part of the work */
 #define METAL "titanium"
@@ -24,12 +26,13 @@ static const char reason[] =
     "as improbable as four standard errors, taken from the spread of the passes; and 2e-5 for "
     "sampling of the spectrum and the angles of a pixel";
 
-/* Adds the mean radiance of the scene's picture at lambda_nm. */
+/* Adds the mean radiance of the scene's picture at lambda_nm; or, not of "Y", a share of light. */
 static abbe_result add(abbe_known_run *run, const char *what, double exact, double lambda_nm,
-                       const char *text, abbe_error *error) {
+                       const char *channel, const char *text, abbe_error *error) {
+  const bool seen = strcmp(channel, "Y") == 0;
   abbe_scene scene = {0};
   const abbe_known_setting setting = {.what = what,
-                                      .unit = "W/(m2 sr)",
+                                      .unit = seen ? "W/(m2 sr)" : "share",
                                       .reason = reason,
                                       .exact = exact,
                                       .slack = 2e-5,
@@ -37,8 +40,8 @@ static abbe_result add(abbe_known_run *run, const char *what, double exact, doub
                                       .samples = 1 << 16,
                                       .lambda_nm = lambda_nm,
                                       .polarised = true,
-                                      .side = 24,
-                                      .channel = "Y"};
+                                      .side = seen ? 24 : 8,
+                                      .channel = channel};
   abbe_result result = abbe_known_scene(&scene, error, "%s", text);
   if (result == ABBE_OK) result = abbe_known_add_setting(run, &setting, &scene, FIRST, 1, error);
   abbe_scene_free(&scene);
@@ -58,7 +61,7 @@ static abbe_result add_sheets(abbe_known_run *run, double degrees, abbe_error *e
       "   transform: [{translate: [0, 0, -1]}]}\n",
       25 + degrees);
   abbe_number_format(what, sizeof what, "two polarisers at %g degrees", degrees);
-  return add(run, what, c * c / 2, 0, text, error);
+  return add(run, what, c * c / 2, 0, "Y", text, error);
 }
 
 /* ---- a pile of plates at Brewster's angle ---- */
@@ -113,7 +116,7 @@ static abbe_result add_pile(abbe_known_run *run, int plates, int sheet, abbe_err
   }
   snprintf(what, sizeof what, "%d plate%s of n-bk7 at Brewster's angle pass, %s", plates,
            plates > 1 ? "s" : "", names[sheet]);
-  return add(run, what, exact, ABBE_LINE_D_NM, text, error);
+  return add(run, what, exact, ABBE_LINE_D_NM, "Y", text, error);
 }
 
 /* ---- two metal mirrors ---- */
@@ -155,7 +158,70 @@ static abbe_result add_mirrors(abbe_known_run *run, bool crossed, abbe_error *er
   return add(run,
              crossed ? "two mirrors of " METAL " at 45 degrees, crossed"
                      : "two mirrors of " METAL " at 45 degrees, in one plane",
-             crossed ? s * s * s : (s * s + s * s * s * s) / 2, METAL_NM, text, error);
+             crossed ? s * s * s : (s * s + s * s * s * s) / 2, METAL_NM, "Y", text, error);
+}
+
+/* What a metal face of normal n makes of the field of light along k, which becomes the mirrored
+ * way: s is across both, p across s and the way. */
+static void mirror_field(double complex metal, const double n[3], double k[3],
+                         double complex field[3]) {
+  double s[3], p[3], q[3], out[3];
+  const double cosine = -abbe_vector_dot(k, n);
+  for (int i = 0; i < 3; i++) out[i] = k[i] + 2 * cosine * n[i];
+  abbe_vector_cross(k, n, s);
+  const double length = abbe_vector_length(s);
+  for (int i = 0; i < 3; i++) s[i] /= length;
+  abbe_vector_cross(k, s, p);
+  abbe_vector_cross(out, s, q);
+  const double complex square = metal * metal, inner = csqrt(square - 1 + cosine * cosine);
+  double complex of_s = (cosine - inner) / (cosine + inner);
+  double complex of_p = (square * cosine - inner) / (square * cosine + inner);
+  of_s *= field[0] * s[0] + field[1] * s[1] + field[2] * s[2];
+  of_p *= field[0] * p[0] + field[1] * p[1] + field[2] * p[2];
+  for (int i = 0; i < 3; i++) field[i] = of_s * s[i] + of_p * q[i];
+  for (int i = 0; i < 3; i++) k[i] = out[i];
+}
+
+/* A lamp of right-handed light off two metal mirrors at 45 degrees, whose planes are turned against
+ * each other by as much: what the camera sees of it, and what photons bring to where the camera
+ * is. */
+static abbe_result add_both_ways(abbe_known_run *run, bool photons, abbe_error *error) {
+  const double c = sqrt(0.5), places[2][3] = {{0, 0, 0}, {0, 0, 4}};
+  const double normals[2][3] = {{-c, 0, c}, {0.5, 0.5, -c}};
+  const double lamp[3] = {4 * c, 4 * c, 4};
+  char text[2048], light[256];
+  abbe_number_format(light, sizeof light,
+                     photons ? "kind: spot, target: [0, 0, 4], cone: 0.2, intensity: 1"
+                             : "kind: rectangle, direction: [-1, -1, 0], width: 1, height: 1, "
+                               "radiance: 1");
+  int length = abbe_number_format(
+      text, sizeof text,
+      "camera: {eye: [-4, 0, 0], target: [0, 0, 0], fov: 0.1}\n"
+      "lights: [{%s, position: [%.17g, %.17g, %g], polariser: {kind: right}}]\n"
+      "objects:\n- {name: screen, shape: rectangle, width: 2, height: 2, reflectance: 0.5,\n"
+      "   transform: [{rotate: {axis: [0, 1, 0], angle: 90}}, {translate: [-8, 0, 0]}]}\n",
+      light, lamp[0], lamp[1], lamp[2]);
+  for (int i = 0; i < 2; i++)
+    length += put_mirror(text + length, sizeof text - (size_t)length, i, places[i], normals[i]);
+  /* behind the lamp: photons are followed where mirrors show the camera a receiver */
+  snprintf(text + length, sizeof text - (size_t)length,
+           "- {name: wall, shape: rectangle, width: 2, height: 2, reflectance: 0.5,\n"
+           "   transform: [{rotate: {axis: [1, -1, 0], angle: 90}}, {translate: [6, 6, 4]}]}\n");
+  abbe_scene scene = {0};
+  double n = 0, k = 0, way[3] = {-c, -c, 0}, all = 0;
+  abbe_result result = abbe_known_scene(&scene, error, "%s", text);
+  if (result == ABBE_OK)
+    result = abbe_material_nk(scene.object[1].conductor, METAL_NM, &n, &k, error);
+  abbe_scene_free(&scene);
+  if (result != ABBE_OK) return result;
+  /* what is upright is -i of what is level, along x - y: so it turns as the lamp's sheet has it */
+  double complex field[3] = {c * c, -c * c, -I * c};
+  for (int i = 1; i >= 0; i--) mirror_field(n + I * k, normals[i], way, field);
+  for (int i = 0; i < 3; i++) all += creal(field[i] * conj(field[i]));
+  return add(run,
+             photons ? "right-handed light off two mirrors of " METAL ", as photons bring it"
+                     : "right-handed light off two mirrors of " METAL ", as the camera sees it",
+             photons ? all : all / 2, METAL_NM, photons ? "deposited" : "Y", text, error);
 }
 
 /* ---- tourmaline ---- */
@@ -193,7 +259,7 @@ static abbe_result add_tourmaline(abbe_known_run *run, bool crossed, abbe_error 
   }
   return add(run,
              crossed ? "two plates of " STONE ", crossed" : "two plates of " STONE ", parallel",
-             exact, STONE_NM, text, error);
+             exact, STONE_NM, "Y", text, error);
 }
 
 /* ---- the furnace ---- */
@@ -207,17 +273,19 @@ static abbe_result add_furnace(abbe_known_run *run, const char *stone, abbe_erro
            "   pavilion: 0.03, material: %s}\n",
            stone);
   snprintf(what, sizeof what, "cut %s in even light", stone);
-  return add(run, what, 1, 0, text, error);
+  return add(run, what, 1, 0, "Y", text, error);
 }
 
 abbe_result abbe_known_polarised(abbe_known_run *run, abbe_error *error) {
   static const double angles[] = {0, 30, 90};
   static const char *const stones[] = {"diamond", "calcite", "topaz"};
+  static const int plates[] = {1, 4, 10};
   abbe_result result = abbe_known_sheets(run, FIRST, error);
   for (int i = 0; i < 3 && result == ABBE_OK; i++) result = add_sheets(run, angles[i], error);
-  for (int i = 0; i < 6 && result == ABBE_OK; i++)
-    result = add_pile(run, i < 3 ? 1 : 4, i % 3, error);
+  for (int i = 0; i < 9 && result == ABBE_OK; i++)
+    result = add_pile(run, plates[i / 3], i % 3, error);
   for (int i = 0; i < 2 && result == ABBE_OK; i++) result = add_mirrors(run, i == 1, error);
+  for (int i = 0; i < 2 && result == ABBE_OK; i++) result = add_both_ways(run, i == 1, error);
   for (int i = 0; i < 2 && result == ABBE_OK; i++) result = add_tourmaline(run, i == 1, error);
   for (int i = 0; i < 3 && result == ABBE_OK; i++) result = add_furnace(run, stones[i], error);
   return result;
