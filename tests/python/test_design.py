@@ -72,7 +72,7 @@ class Panes(unittest.TestCase):
                 self.assertAlmostEqual(seen[part].mean() / target[part].mean(), 1, delta=0.02)
             for edge, at in ((face.u[:, 0], 0), (face.u[:, -1], COLUMNS), (face.v[0], 0),
                              (face.v[-1], ROWS)):
-                self.assertLess(np.abs(edge - at).max(), 0.3)
+                self.assertLess(np.abs(edge - at).max(), 0.01)
 
     def test_derivatives_of_the_ray_map(self):
         face = made(hill() / hill().mean(), (0.1, 0, 0.5), refine=0)

@@ -176,28 +176,15 @@ def sampled(picture, u, v):
 
 
 def shortfall(face, wanted):
-    """What of each vertex' flux has no place in the picture, the least det DY, and the target's
-    density and derivatives for the next step. The picture's flux is wanted's sum."""
+    """What of each vertex' flux has no place in the picture, whose flux is wanted's sum; and the
+    target's density at cells."""
     flux, places = face.cells()
-    flux = flux * (wanted.sum() / flux.sum())
     density, share = 0, 0
-    least = np.inf
     for u, ux, uy, v, vx, vy in places:
-        det = ux * vy - uy * vx
-        least = min(least, det.min())
         g = sampled(wanted, u, v)
-        density, share = density + g / 4, share + g * det / 4
-    r = spread(flux - share)
-    # The target's light between the picture's edge and where the face's edge lands.
-    rows, columns = wanted.shape
-    for side, land, edge, along, sign in (
-            (np.s_[:, 0], face.u, 0, face.v, -1), (np.s_[:, -1], face.u, columns, face.v, 1),
-            (np.s_[0, :], face.v, 0, face.u, -1), (np.s_[-1, :], face.v, rows, face.u, 1)):
-        gap = sign * (edge - land[side]) * sampled(wanted, face.u[side], face.v[side])
-        lost = (gap[:-1] + gap[1:]) / 4 * np.diff(along[side])
-        r[side][:-1] -= lost
-        r[side][1:] -= lost
-    return r - r.mean(), least, density
+        density, share = density + g / 4, share + g * (ux * vy - uy * vx) / 4
+    r = spread(flux * (wanted.sum() / flux.sum()) - share)
+    return r - r.mean(), density
 
 
 def conductivity(face, density):
@@ -249,16 +236,30 @@ def solve(a, b, c, r, tolerance=0.01, most=100):
     return h - h.mean()
 
 
-def newton(face, wanted, steps, floor=1e-3):
-    """Steps towards the face that throws wanted; each as long as light does not cross."""
+def rimmed(face):
+    """The face with other heights at its rim, by which its edges land on the picture's."""
+    setup, h = face.setup, face.h.copy()
+    rows, columns = setup.shape
+    uu, _, _, vv = face.derivative()
+    p = face.slope[0] + (np.where(setup.x < 0, 0, columns) - face.u) / uu
+    q = face.slope[1] + (np.where(setup.y < 0, 0, rows) - face.v) / vv
+    for heights, slope, cell in ((h.T, p.T, setup.cell[0]), (h, q, setup.cell[1])):
+        for k, step in ((0, -2 * cell), (-1, 2 * cell)):  # as slopes() has them
+            near, far = (1, 2) if k == 0 else (-2, -3)
+            heights[k] = (4 * heights[near] - heights[far] + step * slope[k]) / 3
+    return Face(setup, h, face.n)
+
+
+def newton(face, wanted, steps):
+    """Steps towards the face that throws wanted, each as long as it leads nearer. Light of single
+    cells may cross where the picture is dark; it is little, and later steps part it."""
     for _ in range(steps):
-        r, least, density = shortfall(face, wanted)
+        r, density = shortfall(face, wanted)
         change = solve(*conductivity(face, density), r)
-        size, least = np.linalg.norm(r), min(0.3 * least, floor)
-        for length in (1, 0.5, 0.25, 0.12, 0.06):
-            new = Face(face.setup, face.h + length * change, face.n)
-            left, smallest, _ = shortfall(new, wanted)
-            if not new.turned_back and smallest > least and np.linalg.norm(left) < 1.2 * size:
+        for length in (1, 0.5, 0.25, 0.12, 0.06, 0.03):
+            new = rimmed(Face(face.setup, face.h + length * change, face.n))
+            left, _ = shortfall(new, wanted)
+            if not new.turned_back and np.linalg.norm(left) < np.linalg.norm(r):
                 face = new
                 break
         else:
@@ -349,7 +350,7 @@ def design(target, setup, n, refine=3, progress=None):
     done."""
     columns = target.shape[1]
     blurs = [blur * columns for blur in BLURS if blur * columns > 0.3]
-    stages = [(blurred(target, blur), 2, 1e-3) for blur in blurs] + [(target, 3, 1e-3)]
+    stages = [(blurred(target, blur), 2) for blur in blurs] + [(target, 6)]
     face = start(setup, n)
     if face.turned_back:
         raise Refused("the picture is too large or too far aside: light would have to leave the glass "
@@ -369,6 +370,6 @@ def design(target, setup, n, refine=3, progress=None):
             return best
         ratio = blurred(target, 0.9) / np.maximum(blurred(seen, 0.9), 1e-6)
         wanted = wanted * np.clip(ratio, 0.5, 2)**0.5
-        face = newton(face, wanted * (target.sum() / wanted.sum()), 2, -np.inf)
+        face = newton(face, wanted * (target.sum() / wanted.sum()), 2)
         if progress:
             progress((len(stages) + done + 1) / (len(stages) + refine))
