@@ -358,12 +358,10 @@ TEST(of_a_large_picture_what_is_shown_is_read) {
   assert_memory_equal(out[0], out[1], sizeof out[0]);
   FILLED(abbe_inspect_probe, one, probe(&s, (const size_t[4]){299, 7, 299, 7}, &one));
   assert_near(one.mean[1], full->data[2 * (7 * LARGE_W + 299) + 1], 1e-6);
-  assert_int_equal(one.side, 1);
   FILLED(abbe_inspect_probe, part, probe(&s, (const size_t[4]){90, 70, 120, 99}, &part));
   FILLED(abbe_inspect_probe, same, probe(&all, (const size_t[4]){90, 70, 120, 99}, &same));
   assert_near(part.mean[0], same.mean[0], 1e-9);
   assert_int_equal(part.pixels, same.pixels);
-  /* all of it is more than may be in memory: means of 4 x 4 */
   FILLED(abbe_inspect_probe, means, probe(&s, whole, &means));
   assert_int_equal(means.side, 4);
   assert_int_equal(means.pixels, LARGE_W / 4 * (LARGE_H / 4));
@@ -428,7 +426,6 @@ TEST(an_avif_is_the_light_that_it_encodes) {
   }
 }
 
-/* A packet of so many bytes, whose first four say it. */
 #define TAKE(s, bytes)                                                                             \
   abbe_inspect_take_packet(s, (const unsigned char *)(bytes), sizeof(bytes) - 1, &focus, &error)
 
@@ -440,26 +437,19 @@ TEST(packets_that_are_none_are_refused) {
     const char *says;
   } cases[] = {
       {"\7\0\0\0\2a", 6, "its length is another"},
-      {"\7\0\0\0\2a", 7, NULL},
       {"\6\0\0\0\2a", 6, "it has no name"},
       {"\6\0\0\0\2\0", 6, "it has no name"},
       {"\5\0\0\0\11", 5, "its kind is not known"},
-      {"\31\0\0\0\4\1a\0\4\0\0\0\4\0\0\0\1\0\0\0R\0\0\0\0", 25, NULL},
       {"\26\0\0\0\4\1a\0\4\0\0\0\0\0\0\0\1\0\0\0R", 22, "its size is none"},
       {"\26\0\0\0\4\1a\0\4\0\0\0\1\0\1\0\1\0\0\0R", 22, "its size is none"},
       {"\26\0\0\0\4\1a\0\4\0\0\0\4\0\0\0\0\0\0\0R", 22, "its channels are none"},
       {"\25\0\0\0\4\1a\0\4\0\0\0\4\0\0\0\1\0\0\0R", 21, "its channels are none"},
-      {"\36\0\0\0\3\0a\0R\0\0\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0\0\0\0\0", 30, NULL},
       {"\35\0\0\0\3\0a\0R\0\0\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0\0\0\0", 29, "too few numbers"},
       {"\36\0\0\0\3\0a\0R\0\0\0\0\0\0\0\0\0\377\0\0\0\1\0\0\0\0\0\0\0", 30, "too few numbers"}};
-  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    const unsigned char *bytes = (const unsigned char *)cases[i].bytes;
-    if (cases[i].says == NULL)
-      OK(abbe_inspect_take_packet(NULL, bytes, cases[i].size, NULL, &error));
-    else
-      REFUSED(ABBE_PARSE, cases[i].says,
-              abbe_inspect_take_packet(NULL, bytes, cases[i].size, NULL, &error));
-  }
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    REFUSED(ABBE_PARSE, cases[i].says,
+            abbe_inspect_take_packet(NULL, (const unsigned char *)cases[i].bytes, cases[i].size,
+                                     NULL, &error));
 }
 
 TEST(what_is_sent_is_bounded_and_said) {
