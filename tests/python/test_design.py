@@ -136,6 +136,13 @@ class Prisms(unittest.TestCase):
             for off in (-0.01, 0.01):
                 self.assertGreater(prism.deviation_at(math.radians(apex), n, incidence + off), got)
 
+    def test_two_faces_at_brewsters_angle(self):
+        """Light along the plane of incidence is not mirrored; that across it is, at both faces."""
+        incidence = math.atan(N)
+        mirrored = ((N**2 - 1) / (N**2 + 1))**2
+        passed = pane.fresnel(math.cos(incidence), math.sin(incidence), 1, N, faces=2)
+        self.assertAlmostEqual(passed, (1 + (1 - mirrored)**2) / 2, places=12)
+
     def test_fans(self):
         n = abbe.Materials()["sf10"].n(prism.LINES)
         apex = prism.apex_for_spread(math.radians(2), n)

@@ -309,8 +309,7 @@ def _prism(argv):
         if not 0 < apex < 2 * np.arcsin(1 / n[0]):
             continue
         deviation, incidence = prism.least_deviation(apex, n[0])
-        inside = apex / 2
-        through = pane.fresnel(np.cos(incidence), np.cos(inside), 1, n[0])**2
+        through = pane.fresnel(np.cos(incidence), np.cos(apex / 2), 1, n[0], faces=2)
         spread = prism.spread_of(apex, n)
         if math.isfinite(spread):
             rows.append((name, *np.degrees([apex, incidence, deviation, spread]), through))

@@ -49,11 +49,11 @@ def slopes(h, cell):
     return right, down
 
 
-def fresnel(cos_in, cos_out, n_in, n_out):
-    """The share of unpolarised light that a face lets through."""
+def fresnel(cos_in, cos_out, n_in, n_out, faces=1):
+    """The share of unpolarised light that a face lets through, or several that it meets alike."""
     across = (n_in * cos_in - n_out * cos_out) / (n_in * cos_in + n_out * cos_out)
     along = (n_out * cos_in - n_in * cos_out) / (n_out * cos_in + n_in * cos_out)
-    return 1 - (across**2 + along**2) / 2
+    return ((1 - across**2)**faces + (1 - along**2)**faces) / 2
 
 
 @dataclasses.dataclass
