@@ -210,6 +210,13 @@ class Commands(unittest.TestCase):
                                                        "objects.pane.fit": 0.1})
                              .plan()["mesh_faces"], abbe.Scene("p.yaml").plan()["mesh_faces"])
 
+    def test_names_that_mean_something_in_yaml(self):
+        os.rename("hill.png", "a: b #.png")
+        code, _, wrong = run("pane", "a: b #.png", "-o", 'p "#1.obj', "--scene", "p.yaml", "--light",
+                             "-0.02,-0.01,0.8")
+        self.assertEqual((code, wrong), (0, ""))
+        self.assertGreater(abbe.Scene("p.yaml").plan()["mesh_faces"], 2 * (ROWS - 1) * (COLUMNS - 1))
+
     def test_tables(self):
         code, out, _ = run("prism", "--deviation", "45", "--spread", "2")
         self.assertEqual(code, 0)
@@ -224,6 +231,9 @@ class Commands(unittest.TestCase):
         grey = np.full((20, 20, 3), 0.5)
         abbe.Picture(grey, space="rec709").save("blank.png", view="Plain")
         abbe.Picture(grey[:9, :9], space="rec709").save("tiny.png", view="Plain")
+        wide = np.linspace(0.1, 1, 40)[None, :, None].repeat(16, 0).repeat(3, 2)
+        abbe.Picture(wide, space="rec709").save("wide.png", view="Plain")
+        abbe.Picture(wide.transpose(1, 0, 2), space="rec709").save("tall.png", view="Plain")
         files = set(os.listdir("."))
         for line, code, part in (
                 ("pane no.png -o p.obj", 1, "no.png: No such file"),
@@ -233,6 +243,8 @@ class Commands(unittest.TestCase):
                 ("pane hill.png -o p.obj --white 20", 1, "times the light that there is; --white may"),
                 ("pane hill.png -o p.obj --white -1", 1, "not above 0"),
                 ("pane hill.png -o p.obj --picture 2 --distance 0.3", 1, "critical angle"),
+                ("pane wide.png -o p.obj --cells 16", 1, "has 6 of them down; 16 to 2048"),
+                ("pane tall.png -o p.obj --cells 2048", 1, "has 5120 of them down; 16 to 2048"),
                 ("pane hill.png -o p.obj --depth 0.01mm", 1, "mm deep, and --depth"),
                 ("pane hill.png -o p.obj --radius 5", 1, "smallest dip"),
                 ("pane hill.png -o p.obj --thickness 0.1mm", 1, "make --thickness larger"),
@@ -251,6 +263,7 @@ class Commands(unittest.TestCase):
                 ("prism --deviation 20 --material gold", 1, "gold: it is no clear glass"),
                 ("achromat", 2, "what for?"), ("achromat --focal 1 --glasses f2", 2, "two glasses"),
                 ("achromat --focal 1 --glasses sf11,n-sf11", 1, "no pair"),
+                ("achromat --deviation 80", 1, "no pair"),
                 ("lens", 2, "there is no 'lens'"), ("", 2, "usage:")):
             seen, _, wrong = run(*line.split())
             self.assertEqual((seen, part in wrong), (code, True), line + ": " + wrong)

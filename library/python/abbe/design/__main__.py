@@ -91,6 +91,7 @@ def _pane_parser():
                   "examples:\n  abbe design pane face.png -o pane.obj --scene pane.yaml\n"
                   "  abbe trace pane.yaml -o pane.exr --png traced.png\n"
                   "  abbe design pane face.png -o pane.stl --size 15cm --distance 1 --light 0,0,2")
+    out._negative_number_matcher = re.compile(r"-[\d.]")  # a place may begin with one
     out.add_argument("target", nargs="?", help=argparse.SUPPRESS)
     add = out.add_argument
     add("-o", "--output", metavar="FILE", action="append", type=target(".obj", ".stl"),
@@ -223,7 +224,11 @@ def _pane(argv):
     n = float(np.average(material.n(nm), weights=weights[:, 1]))
     if not 1.05 < n < 4 or np.max(material.k(nm)) > 1e-3:
         raise pane.Refused(f"--material {q.material}: a pane is of a clear material")
-    cells = q.cells or min(round(1.5 * picture.shape[1]), 2048)
+    rows, columns = picture.shape
+    cells = q.cells or round(1.5 * columns)
+    if not 16 <= round(cells * rows / columns) <= 2048:
+        raise pane.Refused(f"--cells {cells}: a picture of {columns} x {rows} pixels has "
+                           f"{round(cells * rows / columns)} of them down; 16 to 2048 are right")
     setup = pane.Setup(picture.shape, q.size, q.distance, q.thickness, q.light, q.picture, cells)
     on = not q.quiet and sys.stderr.isatty()
     face = pane.design(wanted, setup, n, progress=lambda done: on and print(
@@ -243,7 +248,8 @@ def _pane(argv):
     if q.scene:
         mesh = os.path.relpath(meshes[0], os.path.dirname(q.scene) or ".")
         _write(q.scene, solid.scene(setup, mesh, q.material,
-                                    f"a pane that throws {os.path.basename(q.target)}").encode())
+                                    f"a pane that throws {os.path.basename(q.target)}")
+               .encode(errors="surrogateescape"))
     if q.png:
         abbe.Picture(rgb / wanted.max(), space="rec709").save(q.png, view="Plain")
     if q.json:

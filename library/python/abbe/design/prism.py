@@ -62,10 +62,11 @@ def pair_focal(focals, at_d, indices):
 
 
 def pair_deviation(apexes, n1, n2):
-    """Of two prisms that are cemented base to apex; light falls straight onto the first face."""
-    inside = np.arcsin(n1 / n2 * np.sin(apexes[0]))
+    """Of two prisms that are cemented base to apex; light falls straight onto the first face. nan
+    where a face turns it back."""
     last = apexes[0] - apexes[1]
     with np.errstate(invalid="ignore"):
+        inside = np.arcsin(n1 / n2 * np.sin(apexes[0]))
         return -(last + np.arcsin(n2 * np.sin(apexes[0] - inside - last)))
 
 

@@ -1,4 +1,5 @@
 """A height field as a closed solid with a flat back, as OBJ with normals, as STL, and in a scene."""
+import json
 import struct
 
 import numpy as np
@@ -70,6 +71,7 @@ def scene(setup, mesh, material, name):
              else "kind: point\n    position: [%.9g, %.9g, %.9g]\n    intensity: %.9g"
              % (*setup.lamp, setup.lamp[2]**2))
     tall = setup.pixel * rows
+    name, mesh, material = (json.dumps(text, ensure_ascii=False) for text in (name, mesh, material))
     return f"""\
 description: {name}
 camera:
