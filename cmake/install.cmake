@@ -34,9 +34,6 @@ install(TARGETS abbe RUNTIME)
 if(TARGET abbe_shared)
   install(TARGETS abbe_shared LIBRARY)
 endif()
-if(ABBE_MPI)
-  install(TARGETS abbe-mpi RUNTIME COMPONENT mpi)
-endif()
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/abbeConfig.cmake.in
   ${CMAKE_CURRENT_BINARY_DIR}/abbeConfig.cmake INSTALL_DESTINATION ${package})
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/abbeConfigVersion.cmake
@@ -68,11 +65,7 @@ file(MAKE_DIRECTORY ${pages})
 add_custom_command(OUTPUT ${pages}/abbe.1 ${pages}/abbe.bash ${pages}/_abbe
   COMMAND abbe --write-pages ${pages} DEPENDS abbe VERBATIM)
 add_custom_target(abbe_pages ALL DEPENDS ${pages}/abbe.1)
-install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN *.1
-  PATTERN abbe-mpi.1 EXCLUDE)
-if(ABBE_MPI)
-  install(FILES ${pages}/abbe-mpi.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT mpi)
-endif()
+install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN *.1)
 install(FILES ${pages}/abbe.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
   RENAME abbe)
 install(FILES ${pages}/_abbe DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)

@@ -1,4 +1,4 @@
-# cpack -G DEB: Debian packages of what is installed: abbe, and abbe-mpi, which alone needs MPI.
+# cpack -G DEB: a Debian package of what is installed.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME abbe)
 set(CPACK_PACKAGE_VENDOR Abbe)
@@ -32,11 +32,4 @@ set(CPACK_DEBIAN_MAIN_PACKAGE_NAME abbe)
 # Loaded when a context is wanted, so that no linker tells of it.
 set(CPACK_DEBIAN_MAIN_PACKAGE_DEPENDS "libegl-mesa0 | libosmesa6")
 set(CPACK_DEBIAN_MAIN_PACKAGE_RECOMMENDS "python3-numpy, python3-matplotlib")
-if(ABBE_MPI)
-  list(APPEND CPACK_COMPONENTS_ALL mpi)
-  set(CPACK_DEBIAN_MAIN_PACKAGE_SUGGESTS "abbe-mpi")
-  set(CPACK_DEBIAN_MPI_PACKAGE_NAME abbe-mpi)
-  set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "abbe (= ${PROJECT_VERSION}-${release}), openmpi-bin")
-  set(CPACK_COMPONENT_MPI_DESCRIPTION "A trace by the ranks of an MPI job: abbe-mpi.")
-endif()
 include(CPack)

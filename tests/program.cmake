@@ -75,13 +75,6 @@ add_test(NAME distributed_page
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
     docs/distributed.md)
 abbe_label(program NAMES full_disk_command killed_parts distributed_page)
-if(ABBE_MPI)
-  add_test(NAME ranks
-    COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/ranks $<TARGET_FILE:abbe> $<TARGET_FILE:abbe-mpi>
-      ${MPIEXEC_EXECUTABLE} ${PROJECT_SOURCE_DIR})
-  abbe_label(program NAMES ranks)
-endif()
-
 add_test(NAME gems_page
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
     docs/gems.md)

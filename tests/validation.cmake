@@ -36,7 +36,6 @@ foreach(name
     photon_grid
     projection_map
     random
-    ranked_run
     reflectance
     route
     scatter

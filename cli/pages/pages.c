@@ -235,27 +235,6 @@ static void man_page_end(FILE *out) {
   end(out, "abbe-render");
 }
 
-/* abbe-mpi's, whose options are another page's. */
-static void man_page_ranks(FILE *out, const char *version) {
-  begin(out, "abbe-mpi", "a trace by the ranks of an MPI job", version);
-  fputs(".SH SYNOPSIS\n.B mpirun\n[\\fIOPTION\\fR…]\n.B abbe\\-mpi trace\n[\\fIOPTION\\fR…] "
-        "\\fIFILE\\fR\n",
-        out);
-  fputs(
-      ".SH DESCRIPTION\nRanks share the passes of a trace; the sums are put together exactly, so "
-      "what comes of it is that of one process, whatever the number of ranks. Rank 0 alone "
-      "writes it and says how far the work is. Options are those of\n.BR abbe\\-trace (1),\nbut\n"
-      ".BR \\-\\-passes ,\n.BR \\-\\-merge ,\n.B \\-\\-frames\nand\n.BR \\-\\-rates .\nEach "
-      "rank keeps a checkpoint, named by its number. A rank that is killed ends the job and costs "
-      "what it had not written; with\n.B \\-\\-resume\nit goes on.\n",
-      out);
-  fputs(".SH EXAMPLES\n", out);
-  static const char example[] =
-      "  mpirun -n 4 abbe-mpi trace scenes/gem.yaml -o gem.exr --spp 256 --resume\n";
-  put_text(out, example, strlen(example));
-  end(out, "abbe-trace");
-}
-
 enum { MOST = 64 };
 
 typedef struct work {
@@ -307,14 +286,6 @@ static void write_own_page(work *w) {
   w->result = abbe_file_writer_commit(&file, w->error);
 }
 
-static void write_ranks_page(work *w) {
-  abbe_file_writer file = {0};
-  if (w->result == ABBE_OK) w->result = open_page(w, "abbe-mpi.1", &file);
-  if (w->result != ABBE_OK) return;
-  man_page_ranks(file.stream, w->version);
-  w->result = abbe_file_writer_commit(&file, w->error);
-}
-
 /* ---- completion ---- */
 
 static void bash_verbs(void *user, const abbe_option_table *table) {
@@ -360,7 +331,6 @@ abbe_result abbe_pages_write(const char *folder, const char *version,
             .error = error};
   write_own_page(&w);
   visit_all(&w, write_page, &w);
-  write_ranks_page(&w);
   write_completion(&w, false);
   write_completion(&w, true);
   return w.result;

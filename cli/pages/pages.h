@@ -14,7 +14,7 @@ typedef struct abbe_pages_command {
   int (*run)(int argc, char **argv);
 } abbe_pages_command;
 
-/* Writes abbe.1, abbe-render.1, …, abbe-mpi.1, abbe.bash and _abbe into a folder that is there. ABBE_IO,
+/* Writes abbe.1, abbe-render.1, …, abbe.bash and _abbe into a folder that is there. ABBE_IO,
  * ABBE_NO_MEMORY. */
 abbe_result abbe_pages_write(const char *folder, const char *version,
                              const abbe_pages_command *command, size_t count, abbe_error *error);

@@ -1,6 +1,5 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
-#include "cli/base/rank_job.h"
 #include "cli/options/picture_options.h"
 #include "cli/options/scene_input.h"
 #include "cli/trace/trace_request.h"
@@ -168,8 +167,6 @@ static void check_parts(const request *q, struct argp_state *state) {
     argp_error(state, "--merge: which parts? Name their checkpoints behind the scene");
   if (part && q->checkpoint == NULL)
     argp_error(state, "--passes needs a file for its part: --checkpoint FILE");
-  if (q->ranks != NULL && (part || q->merge || q->rates))
-    argp_error(state, "--passes, --merge and --rates are for one process: abbe trace");
   if (q->incomplete && !q->merge) argp_error(state, "--incomplete goes with --merge");
   if (!part && !q->merge) return;
   if (q->seconds > 0 || q->until > 0)
@@ -265,26 +262,22 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 static abbe_result check_targets(const request *q, abbe_error *error) {
   const char *const targets[] = {q->checkpoint, q->stats, q->exr, q->png, q->map.save};
   const bool part = q->part_end > 0;
-  if (q->ranks != NULL && q->ranks->rank > 0) return ABBE_OK;
   abbe_result targeted = abbe_command_check_targets(targets, part ? 2 : 5, error);
   if (targeted != ABBE_OK) return targeted;
   if (q->png == NULL || part) return ABBE_OK;
   return abbe_screen_options_check(&q->screen, q->png, q->desc.space, error);
 }
 
-/* The checkpoint stands beside the first output; each rank has its own. */
+/* The checkpoint stands beside the first output. */
 static abbe_result name_checkpoint(request *q, abbe_error *error) {
   const char *beside = q->exr ? q->exr : q->map.save ? q->map.save : q->png;
   if (q->checkpoint == NULL && (beside == NULL || q->merge)) return ABBE_OK;
-  const size_t size = strlen(q->checkpoint ? q->checkpoint : beside) + 64;
+  const size_t size = strlen(q->checkpoint ? q->checkpoint : beside) + sizeof ".checkpoint";
   q->checkpoint_path = malloc(size);
   if (q->checkpoint_path == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
-  const int length =
-      snprintf(q->checkpoint_path, size, "%s%s", q->checkpoint ? q->checkpoint : beside,
-               q->checkpoint ? "" : ".checkpoint");
-  if (q->ranks != NULL)
-    snprintf(q->checkpoint_path + length, size - (size_t)length, ".%zu", q->ranks->rank);
-  if (q->checkpoint == NULL || q->ranks != NULL)
+  snprintf(q->checkpoint_path, size, "%s%s", q->checkpoint ? q->checkpoint : beside,
+           q->checkpoint ? "" : ".checkpoint");
+  if (q->checkpoint == NULL)
     abbe_arguments_add(q->program, ABBE_ARGUMENT_WRITES, "the checkpoint", q->checkpoint_path);
   return ABBE_OK;
 }
@@ -377,11 +370,6 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   if (q->desc.physics.matched)
     result = abbe_matched_physics(scene, q->desc.min_nm, q->desc.max_nm, &q->desc.physics, error);
   if (result == ABBE_OK) result = abbe_tracer_make(scene, &q->desc, &tracer, error);
-  if (q->ranks != NULL) {
-    result = abbe_trace_together(q, result, tracer, error);
-    abbe_tracer_free(tracer);
-    return result;
-  }
   if (result == ABBE_OK) result = print_rates(q, tracer, error);
   const bool wants = q->exr || q->png || q->map.save || q->stats || q->json;
   if (result == ABBE_OK && (wants || q->part_end > 0 || q->merge)) result = trace(q, tracer, error);
@@ -389,7 +377,7 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   return result;
 }
 
-static int run_command(int argc, char **argv, abbe_rank_job *job) {
+int abbe_command_trace(int argc, char **argv) {
   static const struct argp_child children[] = {
       {&abbe_map_options_argp, 0, "Receiver map:", 3},
       {&abbe_screen_options_argp, 0, "How the picture for a display shows it:", 4},
@@ -413,15 +401,10 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
       children,
       NULL,
       NULL};
-  request q = {.program = argv[0],
-               .screen.program = argv[0],
-               .series.program = argv[0],
-               .work.every_s = 30,
-               .ranks = job != NULL ? &job->ranks : NULL};
+  request q = {
+      .program = argv[0], .screen.program = argv[0], .series.program = argv[0], .work.every_s = 30};
   abbe_error error = {0};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
-  if (job != NULL) job->ready();
-  q.quiet = q.quiet || abbe_rank_job_is_silent(job);
   q.desc.min_nm = q.work.min_nm;
   q.desc.max_nm = q.work.max_nm;
   q.desc.seed = q.work.seed;
@@ -439,7 +422,6 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
     result = abbe_scene_input_load_with(argv[0], q.scene, q.materials, &q.changes, &scene, &error);
   if (result == ABBE_OK) result = abbe_scene_input_check_alpha(&scene, &error);
   if (result == ABBE_OK && !q.quiet) abbe_scene_input_note(&scene);
-  result = abbe_rank_job_agree(job, result, &error);
   q.series.resume = q.work.resume;
   if (result == ABBE_OK && q.series.count > 0)
     result = abbe_frame_series_record(&q.series, &scene, &error);
@@ -450,14 +432,5 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
   free(q.checkpoint_path);
   free(q.parts);
   abbe_scene_free(&scene);
-  if (job != NULL) job->alone = result != ABBE_OK && result != ABBE_CANCELLED;
-  return abbe_rank_job_end(job, argv[0], result, &error);
-}
-
-int abbe_command_trace(int argc, char **argv) {
-  return run_command(argc, argv, NULL);
-}
-
-int abbe_trace_by_ranks(int argc, char **argv, abbe_rank_job *job) {
-  return run_command(argc, argv, job);
+  return abbe_command_end(argv[0], result, &error);
 }

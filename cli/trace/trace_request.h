@@ -5,7 +5,6 @@
 #include "cli/options/frame_series.h"
 #include "cli/options/picture_options.h"
 #include "cli/options/scene_input.h"
-#include "validation/trace/tracer/ranked_run.h"
 #include "validation/trace/tracer/trace_run.h"
 #include "validation/trace/tracer/tracer.h"
 
@@ -26,7 +25,6 @@ typedef struct abbe_trace_request {
   const char **parts; /* files to merge */
   size_t part_count;
   double seconds, until;
-  const abbe_ranks *ranks; /* that trace it together; NULL: one process */
   bool json, quiet, rates, half, filter;
   double filter_seconds; /* spent */
   abbe_screen_options screen;
@@ -52,16 +50,11 @@ typedef abbe_result (*abbe_trace_frame)(abbe_trace_request *q, const abbe_scene 
 abbe_result abbe_trace_frames(const abbe_trace_request *q, const abbe_scene *scene,
                               abbe_trace_frame trace_one, abbe_error *error);
 
-/* The passes of `abbe trace`, by this process alone or by ranks together. */
-
-/* With a bar. ABBE_CANCELLED where the user stopped it: what is done is to be saved all the same.
+/* The passes of `abbe trace`, with a bar. ABBE_CANCELLED where the user stopped it: what is done is
+ * to be saved all the same.
  */
 abbe_result abbe_trace_passes(const abbe_trace_request *q, const abbe_trace_run_desc *run,
                               abbe_tracer *tracer, abbe_error *error);
-
-/* All of a trace by the request's ranks, once each has made its tracer, or could not. */
-abbe_result abbe_trace_together(abbe_trace_request *q, abbe_result made, abbe_tracer *tracer,
-                                abbe_error *error);
 
 /* What `abbe trace` writes of a trace, and says of it. */
 

@@ -13,7 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static void add_ledger(cJSON *root, const abbe_light_ledger *l, bool map) {
   cJSON *energy = cJSON_AddObjectToObject(root, "energy");
@@ -190,8 +189,6 @@ void abbe_trace_frames_check(const abbe_trace_request *q, struct argp_state *sta
   abbe_frame_series_check(s, q->png, state);
   if (s->count == 0 && (s->per_second > 0 || s->part.parts > 0))
     argp_error(state, "--%s goes with --frames A:B", s->per_second > 0 ? "fps" : "part");
-  if (s->count > 0 && q->ranks != NULL)
-    argp_error(state, "ranks share passes of one picture; frames go by abbe trace --part K/N");
   if (s->part.parts > 0 && s->part.part >= s->count)
     argp_error(state, "--part %zu/%zu has none of %zu frames", s->part.part, s->part.parts,
                s->count);
@@ -257,54 +254,7 @@ abbe_result abbe_trace_passes(const abbe_trace_request *q, const abbe_trace_run_
   own.user = &progress;
   own.stop = abbe_progress_stopped();
   abbe_progress_begin(&progress, "trace", q->quiet);
-  abbe_result result = q->ranks != NULL ? abbe_ranked_run(q->ranks, tracer, &own, error)
-                                        : abbe_trace_run(tracer, &own, error);
+  const abbe_result result = abbe_trace_run(tracer, &own, error);
   abbe_progress_end(&progress);
-  return result;
-}
-
-/* A rank's own passes, which it may have begun with as many ranks as there are now. */
-static abbe_result resume_rank(const abbe_trace_request *q, abbe_tracer *tracer,
-                               abbe_error *error) {
-  const abbe_ranks *r = q->ranks;
-  if (!q->work.resume || q->checkpoint_path == NULL || access(q->checkpoint_path, F_OK) != 0)
-    return abbe_tracer_begin_at(tracer, r->rank, r->count, error);
-  ABBE_TRY(abbe_checkpoint_load(tracer, q->checkpoint_path, error));
-  const size_t first = abbe_tracer_first_pass(tracer), step = abbe_tracer_step(tracer);
-  if (first == r->rank && step == r->count) return ABBE_OK;
-  return abbe_error_set(
-      error, ABBE_INVALID_ARGUMENT,
-      "%s holds pass %zu and each %zu behind it, the part of one of %zu ranks, and "
-      "there are %zu: run as many, or start anew without --resume",
-      q->checkpoint_path, first, step, step, r->count);
-}
-
-/* All ranks end alike, unless one fails alone. The files go once the results are there. */
-static abbe_result trace_ranks(abbe_trace_request *q, abbe_tracer *tracer, abbe_error *error) {
-  const abbe_trace_run_desc run = {.passes = q->passes,
-                                   .whole = q->whole,
-                                   .seconds = q->seconds,
-                                   .error = q->until,
-                                   .checkpoint = q->checkpoint_path,
-                                   .checkpoint_s = q->work.every_s};
-  abbe_result result = abbe_trace_passes(q, &run, tracer, error);
-  if (result != ABBE_OK) return result;
-  if (q->ranks->rank == 0) {
-    result = abbe_trace_write(q, tracer, error);
-    if (result == ABBE_OK && q->checkpoint != NULL)
-      result = abbe_checkpoint_save(tracer, q->checkpoint, error);
-    if (result == ABBE_OK) abbe_trace_summarise(q, tracer);
-  }
-  result = abbe_ranks_agree(q->ranks, result, error);
-  if (result == ABBE_OK && q->checkpoint_path != NULL) unlink(q->checkpoint_path);
-  return result;
-}
-
-abbe_result abbe_trace_together(abbe_trace_request *q, abbe_result made, abbe_tracer *tracer,
-                                abbe_error *error) {
-  abbe_result result = made == ABBE_OK ? resume_rank(q, tracer, error) : made;
-  result = abbe_ranks_agree(q->ranks, result, error);
-  if (result == ABBE_OK) result = abbe_ranks_compare(q->ranks, tracer, error);
-  if (result == ABBE_OK) result = trace_ranks(q, tracer, error);
   return result;
 }

@@ -11,8 +11,9 @@
 /* File: a line of magic, lines of text that say what the run is, an empty line, then counts,
  * ledger and sums as the machine keeps them, and a hash of all before it. */
 static const char magic[] = "abbe checkpoint 11\n";
-/* Bytes that hold all the lines, and those of the magic that versions share. */
-enum { HEAD = 4096, SAME_MAGIC = 16 };
+/* Bytes that hold all of the head, those of the magic that versions share, and the lines of text.
+ */
+enum { HEAD = 4096, SAME_MAGIC = 16, TEXT = 1024 };
 
 /* ---- hash: FNV-1a, 64 bits ---- */
 
@@ -178,7 +179,7 @@ abbe_result abbe_checkpoint_save(const abbe_tracer *t, const char *path, abbe_er
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;
-  char text[ABBE_CHECKPOINT_TEXT];
+  char text[TEXT];
   describe(t, text, sizeof text);
   abbe_pass_counts counts;
   abbe_pass_counts_get(t, &counts);
@@ -226,7 +227,7 @@ static abbe_result say_difference(const char *path, const char *theirs, const ch
 
 static abbe_result check_text(const abbe_tracer *t, const char *path, char *data, size_t size,
                               size_t *numbers, abbe_error *error) {
-  char ours[ABBE_CHECKPOINT_TEXT];
+  char ours[TEXT];
   size_t head = strlen(magic);
   if (size < head || memcmp(data, magic, head) != 0) {
     bool other = size > SAME_MAGIC && memcmp(data, magic, SAME_MAGIC) == 0;
@@ -484,17 +485,4 @@ abbe_result abbe_checkpoint_merge(abbe_tracer *t, const char *const *path, size_
   free(p.counts);
   free(p.owner);
   return result;
-}
-
-/* ---- other machines ---- */
-
-void abbe_checkpoint_describe(const abbe_tracer *t, char out[ABBE_CHECKPOINT_TEXT]) {
-  describe(t, out, ABBE_CHECKPOINT_TEXT);
-}
-
-abbe_result abbe_checkpoint_compare(const abbe_tracer *t, const char *who, const char *theirs,
-                                    abbe_error *error) {
-  char ours[ABBE_CHECKPOINT_TEXT];
-  describe(t, ours, sizeof ours);
-  return say_difference(who, theirs, ours, error);
 }

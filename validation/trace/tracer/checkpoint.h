@@ -39,13 +39,4 @@ abbe_result abbe_checkpoint_merge(abbe_tracer *tracer, const char *const *path, 
 /* Whether the file begins as a checkpoint does, of whatever version. */
 bool abbe_checkpoint_is(const char *path);
 
-/* What a trace is, in lines of text: its request, a hash of its scene, the processor's
- * instructions. Traces of which they are alike add to one another. */
-enum { ABBE_CHECKPOINT_TEXT = 1024 };
-void abbe_checkpoint_describe(const abbe_tracer *tracer, char out[ABBE_CHECKPOINT_TEXT]);
-/* ABBE_INVALID_ARGUMENT names the first line in which the text of `who`, a file or a machine, is
- * unlike the tracer's. */
-abbe_result abbe_checkpoint_compare(const abbe_tracer *tracer, const char *who, const char *theirs,
-                                    abbe_error *error);
-
 #endif

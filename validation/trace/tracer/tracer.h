@@ -88,7 +88,7 @@ void abbe_tracer_free(abbe_tracer *tracer);
 abbe_result abbe_tracer_pass(abbe_tracer *tracer, const volatile int *stop, abbe_error *error);
 
 /* The first pass is to be of that number, and each is `step` behind the one before: what is done of
- * the others elsewhere can be put together with it (abbe_checkpoint_merge, abbe_ranked_run). Of a
+ * the others elsewhere can be put together with it (abbe_checkpoint_merge). Of a
  * tracer without a pass; ABBE_INVALID_ARGUMENT else, for a step of 0, and from 2^20 on. */
 abbe_result abbe_tracer_begin_at(abbe_tracer *tracer, size_t pass, size_t step, abbe_error *error);
 
