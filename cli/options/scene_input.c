@@ -156,12 +156,6 @@ error_t abbe_scene_input_take(abbe_scene_input_changes *changes, int key, const 
   return 0;
 }
 
-abbe_result abbe_scene_input_load(const char *program, const char *path, const char *materials,
-                                  abbe_scene *out, abbe_error *error) {
-  const abbe_scene_input_changes none = {0};
-  return abbe_scene_input_load_with(program, path, materials, &none, out, error);
-}
-
 /* Options of a studio are for stones' files. */
 static void check_studio(const char *program, const char *path,
                          const abbe_scene_input_changes *changes) {

@@ -128,7 +128,10 @@ void abbe_scene_input_take_file(abbe_scene_input_changes *changes, const char **
  * the rules of what is written (cli/base/arguments.h). NULL for a scene. */
 const char *abbe_scene_input_picture(const char *program, const char *scene);
 
-/* abbe_scene_input_load of the scene with those changes in it. */
+/* abbe_scene_load with that table of materials (NULL: the scene's own) of the scene with those
+ * changes in it. A path that leads nowhere and is found in the share folder that came with the
+ * program is taken there, with a note. Ends the program with ABBE_EXIT_USAGE where a file of the
+ * scene is one that is to be written. */
 abbe_result abbe_scene_input_load_with(const char *program, const char *path, const char *materials,
                                        const abbe_scene_input_changes *changes, abbe_scene *out,
                                        abbe_error *error);
@@ -137,12 +140,6 @@ abbe_result abbe_scene_input_load_with(const char *program, const char *path, co
 abbe_result abbe_scene_input_at(const abbe_scene *scene, const char *materials,
                                 const abbe_scene_input_changes *changes, double time,
                                 abbe_scene *out, abbe_error *error);
-
-/* abbe_scene_load with that table of materials (NULL: the scene's own). A path that leads nowhere
- * and is found in the share folder that came with the program is taken there, with a note. Ends the
- * program with ABBE_EXIT_USAGE where a file of the scene is one that is to be written. */
-abbe_result abbe_scene_input_load(const char *program, const char *path, const char *materials,
-                                  abbe_scene *out, abbe_error *error);
 
 enum { ABBE_SCENE_INPUT_ALPHA_SAMPLES = 8 }; /* for a traced picture */
 /* Before a picture is traced: with --alpha its camera has no aperture, else ABBE_UNSUPPORTED. */
