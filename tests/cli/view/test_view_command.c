@@ -246,7 +246,7 @@ TEST(pictures_are_looked_at) {
             "does not say which light it was made with");
   run_must("head -c 300 bands.exr > cut.exr");
   run_fails("\"$abbe\" view bands.exr cut.exr --script a.txt", 1, "cut.exr");
-  run_fails("\"$abbe\" view bands.webp --script a.txt", 1, ".exr, .hdr, .pic and .png");
+  run_fails("\"$abbe\" view bands.webp --script a.txt", 1, ".exr, .hdr, .pic, .png and .avif");
   run_clears("rm *.exr *.png a.txt b.txt said said.Y is pixel");
 }
 
