@@ -470,7 +470,7 @@ bool abbe_view_app_stopped(const abbe_view_session *app) {
 }
 
 bool abbe_view_app_painted(const abbe_view_session *app) {
-  if (app->inspection.pictures != NULL) 
+  if (app->inspection.pictures != NULL)
     return app->inspection.whole && !app->inspection.stale && !app->inspection.more;
   return !is_stale(app);
 }

@@ -34,10 +34,10 @@ typedef struct abbe_view_app_desc {
   const char *ocio;                  /* configuration, or NULL */
   const char *volume_path;           /* or NULL; what it holds: */
   const abbe_caustic_volume *volume; /* that caustics are looked up in, for as long as it runs */
-  abbe_inspect *pictures; /* instead of a document; NULL: none. They outlive the viewer */
+  abbe_inspect *pictures;       /* instead of a document; NULL: none. They outlive the viewer */
   abbe_view_listener *listener; /* of pictures; or NULL */
-  abbe_view_stage last;   /* where refining ends; NONE: nowhere */
-  void (*wake)(void);     /* or NULL */
+  abbe_view_stage last;         /* where refining ends; NONE: nowhere */
+  void (*wake)(void);           /* or NULL */
 } abbe_view_app_desc;
 
 /* The context is current and stays so, with the widgets' in it. Errors of abbe_view_worker_make,

@@ -124,6 +124,7 @@ static void receive(abbe_view_session *app) {
     size_t focus = SIZE_MAX;
     if (i->at != s->at) update(app);
     const char *before = s->picture[s->at].own;
+    const bool apart = s->look.difference;
     if (size == 0)
       snprintf(said, sizeof said, "%s", bytes != NULL ? (const char *)bytes : "no memory");
     else
@@ -139,6 +140,7 @@ static void receive(abbe_view_session *app) {
       i->look.difference = i->picked = false;
       s->zoom = 0;
     }
+    if (apart && !s->look.difference) i->look.difference = false; /* the other one is closed */
     if (focus < s->count) go_to(i, focus);
   }
   i->more = i->listener != NULL && abbe_clock_seconds() >= until;

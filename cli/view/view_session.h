@@ -36,11 +36,11 @@ typedef struct abbe_view_listener abbe_view_listener;
 
 /* Pictures that are looked at, and by which hand. */
 typedef struct abbe_view_inspection {
-  abbe_inspect *pictures; /* NULL: a scene is shown instead */
+  abbe_inspect *pictures;       /* NULL: a scene is shown instead */
   abbe_view_listener *listener; /* of other pictures; or NULL */
   size_t received;              /* packets of them */
   bool more;                    /* some may wait */
-  abbe_inspect_look look; /* as it is wished, of picture `at`; */
+  abbe_inspect_look look;       /* as it is wished, of picture `at`; */
   size_t at;
   bool stale, whole; /* it is not shown yet; no tile is missing */
   const abbe_illuminant

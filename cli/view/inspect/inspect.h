@@ -105,15 +105,16 @@ typedef struct abbe_inspect {
   double zoom;      /* pixels of the screen for one of the image */
 } abbe_inspect;
 
-/* Reads a picture behind the others. Errors of abbe_picture_file_read,
- * abbe_png_read, abbe_avif_read and abbe_spectral_channels_find; ABBE_UNSUPPORTED for other kinds,
+/* Reads a picture behind the others. Errors of abbe_picture_file_read, abbe_png_read,
+ * abbe_avif_read and abbe_spectral_channels_find; ABBE_UNSUPPORTED for other kinds,
  * ABBE_OUT_OF_RANGE for one picture too many. */
 abbe_result abbe_inspect_open(abbe_inspect *inspect, const char *path, abbe_error *error);
-/* Makes a black one of that width, height and channels behind the others, for ABBE_NO_MEMORY,
- * ABBE_OUT_OF_RANGE as above; errors of abbe_image_make and abbe_spectral_channels_find. */
+/* Makes a black one of size: width, height and channels, behind the others. Errors of
+ * abbe_image_make and abbe_spectral_channels_find; ABBE_OUT_OF_RANGE as above. */
 abbe_result abbe_inspect_create(abbe_inspect *inspect, const char *name, const size_t size[3],
                                 const char *const *channel, abbe_error *error);
-/* Takes a picture out; those behind it move up. Where it was shown, another one is. */
+/* Takes a picture out; those behind it move up. Where it was shown, another one is to be, and no
+ * difference where it was taken off another. */
 void abbe_inspect_close(abbe_inspect *inspect, size_t at);
 /* One that says that nothing has been sent stands where there is none, until there is. */
 abbe_result abbe_inspect_await(abbe_inspect *inspect, abbe_error *error);

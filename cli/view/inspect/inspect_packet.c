@@ -148,12 +148,10 @@ static abbe_result update(abbe_inspect *s, const packet *p, abbe_error *error) {
   if (at == s->count)
     return abbe_error_set(error, ABBE_NOT_FOUND, "%s: no picture of this name is there", p->name);
   const int64_t x1 = (int64_t)p->x + p->width, y1 = (int64_t)p->y + p->height;
-  if (to->coarse > 0 || p->x < 0 || p->y < 0 || x1 > (int64_t)to->width ||
-      y1 > (int64_t)to->height)
-    return abbe_error_set(error, ABBE_OUT_OF_RANGE,
-                          "%s: %d x %d pixels from %d, %d on are not in its %zu x %zu", p->name,
-                          (int)p->width, (int)p->height, (int)p->x, (int)p->y, to->width,
-                          to->height);
+  if (to->coarse > 0 || p->x < 0 || p->y < 0 || x1 > (int64_t)to->width || y1 > (int64_t)to->height)
+    return abbe_error_set(
+        error, ABBE_OUT_OF_RANGE, "%s: %d x %d pixels from %d, %d on are not in its %zu x %zu",
+        p->name, (int)p->width, (int)p->height, (int)p->x, (int)p->y, to->width, to->height);
   for (size_t c = 0; c < p->channels; c++) {
     const size_t channel = abbe_image_find_channel(&to->image, p->channel[c]);
     if (channel == (size_t)-1)
@@ -171,8 +169,8 @@ static abbe_result update(abbe_inspect *s, const packet *p, abbe_error *error) {
         if (isfinite(value)) to->most = fmax(to->most, fabs((double)value));
       }
   }
-  abbe_inspect_touch(s, at, (const size_t[4]){(size_t)p->x, (size_t)p->y, (size_t)x1 - 1,
-                                              (size_t)y1 - 1});
+  abbe_inspect_touch(s, at,
+                     (const size_t[4]){(size_t)p->x, (size_t)p->y, (size_t)x1 - 1, (size_t)y1 - 1});
   return ABBE_OK;
 }
 

@@ -257,14 +257,12 @@ static const char waiting[] = "waiting for pictures";
 static abbe_result begin_picture(abbe_inspect *s, const char *path, abbe_inspect_picture **out,
                                  abbe_error *error) {
   if (s->count == ABBE_INSPECT_MOST_PICTURES)
-    return abbe_error_set(error, ABBE_OUT_OF_RANGE,
-                          "%s: at most %d pictures are looked at at once", path,
-                          ABBE_INSPECT_MOST_PICTURES);
+    return abbe_error_set(error, ABBE_OUT_OF_RANGE, "%s: at most %d pictures are looked at at once",
+                          path, ABBE_INSPECT_MOST_PICTURES);
   abbe_inspect_picture *p = *out = &s->picture[s->count];
   *p = (abbe_inspect_picture){.own = strdup(path)};
   p->path = p->own;
-  return p->own != NULL ? ABBE_OK
-                        : abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", path);
+  return p->own != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", path);
 }
 
 static abbe_result end_picture(abbe_inspect *s, abbe_inspect_picture *p, abbe_result result,
@@ -298,8 +296,8 @@ abbe_result abbe_inspect_create(abbe_inspect *s, const char *name, const size_t 
   p->sent = true;
   p->width = size[0];
   p->height = size[1];
-  return end_picture(
-      s, p, abbe_image_make(size[0], size[1], size[2], channel, &p->image, error), error);
+  return end_picture(s, p, abbe_image_make(size[0], size[1], size[2], channel, &p->image, error),
+                     error);
 }
 
 abbe_result abbe_inspect_await(abbe_inspect *s, abbe_error *error) {
@@ -313,10 +311,13 @@ void abbe_inspect_close(abbe_inspect *s, size_t at) {
   s->count--;
   memmove(&s->picture[at], &s->picture[at + 1], (s->count - at) * sizeof *s->picture);
   s->picture[s->count] = (abbe_inspect_picture){0};
-  if (s->at == at) s->look = (abbe_inspect_look){.exposure = s->look.exposure, .view = s->look.view};
+  if (s->at == at)
+    s->look = (abbe_inspect_look){.exposure = s->look.exposure, .view = s->look.view};
+  if (s->other == at) s->look.difference = false;
   if (s->at > at || s->at == s->count) s->at -= s->at > 0;
   if (s->other > at || s->other == s->count) s->other -= s->other > 0;
   for (size_t i = 0; i < s->count; i++) s->picture[i].look.display = NULL;
+  if (s->look.difference) s->picture[s->at].other = s->other;
 }
 
 void abbe_inspect_free(abbe_inspect *inspect) {

@@ -10,7 +10,7 @@
 
 enum { SIDE = 64, SAMPLES = 256 * 256 };
 enum { BYTES = 4 * SIDE * SIDE }; /* of a tile; the byte behind says that it shows what was */
-#define LOWEST (-10.0) /* stops of the histogram of colours, from 0.18 */
+#define LOWEST (-10.0)            /* stops of the histogram of colours, from 0.18 */
 #define HIGHEST 6.0
 #define MOST_ZOOM 64.0
 
@@ -296,8 +296,8 @@ static void touch(abbe_inspect_picture *p, const size_t window[4]) {
     for (size_t i = 0; level->tile != NULL && i < level->across * level->down; i++) {
       const size_t x = (i % level->across * SIDE) << l, y = (i / level->across * SIDE) << l;
       const size_t side = (size_t)SIDE << l;
-      const bool apart = x > window[2] || y > window[3] || x + side <= window[0] ||
-                         y + side <= window[1];
+      const bool apart =
+          x > window[2] || y > window[3] || x + side <= window[0] || y + side <= window[1];
       if (level->tile[i] != NULL && (all || !apart)) level->tile[i][BYTES] = true;
     }
   }

@@ -426,64 +426,6 @@ TEST(an_avif_is_the_light_that_it_encodes) {
   }
 }
 
-#define TAKE(s, bytes)                                                                             \
-  abbe_inspect_take_packet(s, (const unsigned char *)(bytes), sizeof(bytes) - 1, &focus, &error)
-
-/* Each is right but for one thing. */
-TEST(packets_that_are_none_are_refused) {
-  static const struct {
-    const char *bytes;
-    size_t size;
-    const char *says;
-  } cases[] = {
-      {"\7\0\0\0\2a", 6, "its length is another"},
-      {"\6\0\0\0\2a", 6, "it has no name"},
-      {"\6\0\0\0\2\0", 6, "it has no name"},
-      {"\5\0\0\0\11", 5, "its kind is not known"},
-      {"\26\0\0\0\4\1a\0\4\0\0\0\0\0\0\0\1\0\0\0R", 22, "its size is none"},
-      {"\26\0\0\0\4\1a\0\4\0\0\0\1\0\1\0\1\0\0\0R", 22, "its size is none"},
-      {"\26\0\0\0\4\1a\0\4\0\0\0\4\0\0\0\0\0\0\0R", 22, "its channels are none"},
-      {"\25\0\0\0\4\1a\0\4\0\0\0\4\0\0\0\1\0\0\0R", 21, "its channels are none"},
-      {"\35\0\0\0\3\0a\0R\0\0\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0\0\0\0", 29, "too few numbers"},
-      {"\36\0\0\0\3\0a\0R\0\0\0\0\0\0\0\0\0\377\0\0\0\1\0\0\0\0\0\0\0", 30, "too few numbers"}};
-  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-    REFUSED(ABBE_PARSE, cases[i].says,
-            abbe_inspect_take_packet(NULL, (const unsigned char *)cases[i].bytes, cases[i].size,
-                                     NULL, &error));
-}
-
-TEST(what_is_sent_is_bounded_and_said) {
-  OWNED(abbe_inspect, s) = {.count = 0};
-  size_t focus = 99;
-  OK(abbe_inspect_await(&s, &error));
-  REFUSED(ABBE_NOT_FOUND, "no picture of this name",
-          TAKE(&s, "\36\0\0\0\3\1a\0R\0\0\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0\0\0\0\0"));
-  assert_int_equal(focus, 99);
-  /* 32768 x 32768 of one channel are 4 GiB */
-  REFUSED(ABBE_OUT_OF_RANGE, "4096 MiB; 1024 are the most",
-          TAKE(&s, "\26\0\0\0\4\1a\0\0\200\0\0\0\200\0\0\1\0\0\0R\0"));
-  assert_int_equal(s.count, 1);
-  OK(TAKE(&s, "\26\0\0\0\4\1a\0\2\0\0\0\1\0\0\0\1\0\0\0R\0"));
-  assert_true(s.count == 1 && focus == 0);
-  assert_string_equal(s.picture[0].path, "a");
-  show(&s, 0, "R", (abbe_inspect_look){0});
-  unsigned char out[8];
-  draw(&s, 2, 1, 1, out);
-  assert_int_equal(out[4], 0);
-  REFUSED(ABBE_OUT_OF_RANGE, "1 x 1 pixels from 2, 0",
-          TAKE(&s, "\36\0\0\0\3\1a\0R\0\2\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0\0\0\200\77"));
-  REFUSED(ABBE_NOT_FOUND, "no channel 'G'",
-          TAKE(&s, "\36\0\0\0\3\1a\0G\0\1\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0\0\0\200\77"));
-  OK(TAKE(&s, "\36\0\0\0\3\1a\0R\0\1\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0\0\0\200\77"));
-  show(&s, 0, "R", (abbe_inspect_look){0});
-  draw(&s, 2, 1, 1, out);
-  assert_int_equal(out[0], 0);
-  assert_int_equal(out[4], 255);
-  assert_near(s.picture[0].most_shown, 1, 0);
-  OK(TAKE(&s, "\7\0\0\0\2a\0"));
-  assert_int_equal(s.count, 0);
-}
-
 TEST(what_cannot_be_read_is_said_as_by_its_reader) {
   OWNED(abbe_inspect, s) = {.count = 0};
   static const char *const twice[] = {"S0.500,0nm", "S0.500nm"};
