@@ -123,7 +123,8 @@ static void receive(abbe_view_session *app) {
     abbe_error error = {0};
     size_t focus = SIZE_MAX;
     if (i->at != s->at) update(app);
-    const char *before = s->picture[s->at].own;
+    const abbe_inspect_picture *p = shown_of(i);
+    const size_t before[3] = {p->serial, p->width, p->height};
     const bool apart = s->look.difference;
     if (size == 0)
       snprintf(said, sizeof said, "%s", bytes != NULL ? (const char *)bytes : "no memory");
@@ -135,12 +136,13 @@ static void receive(abbe_view_session *app) {
     i->received++;
     i->stale = true;
     i->at = s->at;
-    if (s->picture[s->at].own != before) { /* it is another one */
-      i->look.entry = 0;
-      i->look.difference = i->picked = false;
+    p = shown_of(i);
+    if (p->serial != before[0]) i->look.entry = 0;
+    if (apart && !s->look.difference) i->look.difference = false;
+    if (p->width != before[1] || p->height != before[2]) {
+      i->picked = false;
       s->zoom = 0;
     }
-    if (apart && !s->look.difference) i->look.difference = false; /* the other one is closed */
     if (focus < s->count) go_to(i, focus);
   }
   i->more = i->listener != NULL && abbe_clock_seconds() >= until;

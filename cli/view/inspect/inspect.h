@@ -65,6 +65,7 @@ typedef struct abbe_inspect_level {
 typedef struct abbe_inspect_picture {
   const char *path;
   char *own;            /* the path, where it is the picture's; or NULL */
+  size_t serial;        /* of no other picture */
   bool sent;            /* it is no file: another program sends it */
   bool changed;         /* since it was shown */
   size_t width, height; /* of the picture; */
@@ -98,6 +99,7 @@ typedef struct abbe_inspect_picture {
 
 typedef struct abbe_inspect {
   size_t most_numbers;     /* 0: as above */
+  size_t made;             /* pictures in all, also those that are closed */
   size_t count, at, other; /* pictures; the one that is shown; the one beside it */
   abbe_inspect_picture picture[ABBE_INSPECT_MOST_PICTURES];
   abbe_inspect_look look;
@@ -116,6 +118,8 @@ abbe_result abbe_inspect_create(abbe_inspect *inspect, const char *name, const s
 /* Takes a picture out; those behind it move up. Where it was shown, another one is to be, and no
  * difference where it was taken off another. */
 void abbe_inspect_close(abbe_inspect *inspect, size_t at);
+/* The last picture takes the place of another, which is closed. */
+void abbe_inspect_replace(abbe_inspect *inspect, size_t at);
 /* One that says that nothing has been sent stands where there is none, until there is. */
 abbe_result abbe_inspect_await(abbe_inspect *inspect, abbe_error *error);
 void abbe_inspect_free(abbe_inspect *inspect);

@@ -17,6 +17,7 @@ typedef struct packet {
   int kind;
   bool focus;
   const char *name;
+  char path[LONGEST_NAME + 1]; /* of a file, without the selector that the first version has */
   int32_t x, y, width, height;
   size_t channels, count;
   const char *channel[ABBE_IMAGE_MAX_CHANNELS];
@@ -113,6 +114,14 @@ static size_t find(const abbe_inspect *s, const char *name) {
   return i;
 }
 
+/* Whether another picture can be made that then takes the place of an old one; where there is no
+ * room for both the old one is closed. */
+static bool begin_again(abbe_inspect *s, size_t old) {
+  const bool full = s->count == ABBE_INSPECT_MOST_PICTURES, is_there = old < s->count;
+  if (is_there && full) abbe_inspect_close(s, old);
+  return is_there && !full;
+}
+
 static abbe_result create(abbe_inspect *s, const packet *p, abbe_error *error) {
   const size_t width = (size_t)p->width, height = (size_t)p->height;
   const size_t old = find(s, p->name);
@@ -126,20 +135,37 @@ static abbe_result create(abbe_inspect *s, const packet *p, abbe_error *error) {
                           "%s: with this picture of %zu x %zu and %zu channels those that were "
                           "sent would have %.0f MiB; %zu are the most",
                           p->name, width, height, p->channels, bytes / (1 << 20), MOST_BYTES >> 20);
-  if (old < s->count) abbe_inspect_close(s, old);
-  return abbe_inspect_create(s, p->name, (const size_t[3]){width, height, p->channels}, p->channel,
-                             error);
+  const bool again = begin_again(s, old);
+  ABBE_TRY(abbe_inspect_create(s, p->name, (const size_t[3]){width, height, p->channels},
+                               p->channel, error));
+  if (again) abbe_inspect_replace(s, old);
+  return ABBE_OK;
 }
 
-/* The protocol's first version has a selector of channels behind the path's last colon. */
-static abbe_result open_file(abbe_inspect *s, const packet *p, abbe_error *error) {
-  char path[LONGEST_NAME + 1];
-  snprintf(path, sizeof path, "%s", p->name);
-  char *colon = p->kind == OPEN && access(path, F_OK) != 0 ? strrchr(path, ':') : NULL;
+static abbe_result open_file(abbe_inspect *s, packet *p, abbe_error *error) {
+  snprintf(p->path, sizeof p->path, "%s", p->name);
+  char *colon = p->kind == OPEN && access(p->path, F_OK) != 0 ? strrchr(p->path, ':') : NULL;
   if (colon != NULL) *colon = '\0';
-  const size_t old = find(s, path);
-  if (old < s->count) return ABBE_OK;
-  return abbe_inspect_open(s, path, error);
+  p->name = p->path;
+  return find(s, p->path) < s->count ? ABBE_OK : abbe_inspect_open(s, p->path, error);
+}
+
+static abbe_result reload(abbe_inspect *s, const packet *p, abbe_error *error) {
+  const size_t old = find(s, p->name);
+  if (old == s->count || s->picture[old].sent) return ABBE_OK;
+  const bool again = begin_again(s, old);
+  ABBE_TRY(abbe_inspect_open(s, p->name, error));
+  if (again) abbe_inspect_replace(s, old);
+  return ABBE_OK;
+}
+
+/* Bands that are named in another way are called as the layout has them. */
+static size_t find_channel(const abbe_inspect_picture *p, const char *name) {
+  char own[64];
+  const size_t channel = abbe_image_find_channel(&p->image, name);
+  if (channel != (size_t)-1 || !p->renamed) return channel;
+  snprintf(own, sizeof own, "S0.%.40s", name + strcspn(name, "0123456789"));
+  return abbe_image_find_channel(&p->image, own);
 }
 
 static abbe_result update(abbe_inspect *s, const packet *p, abbe_error *error) {
@@ -153,7 +179,7 @@ static abbe_result update(abbe_inspect *s, const packet *p, abbe_error *error) {
         error, ABBE_OUT_OF_RANGE, "%s: %d x %d pixels from %d, %d on are not in its %zu x %zu",
         p->name, (int)p->width, (int)p->height, (int)p->x, (int)p->y, to->width, to->height);
   for (size_t c = 0; c < p->channels; c++) {
-    const size_t channel = abbe_image_find_channel(&to->image, p->channel[c]);
+    const size_t channel = find_channel(to, p->channel[c]);
     if (channel == (size_t)-1)
       return abbe_error_set(error, ABBE_NOT_FOUND, "%s: it has no channel '%.60s'", p->name,
                             p->channel[c]);
@@ -187,14 +213,11 @@ abbe_result abbe_inspect_take_packet(abbe_inspect *s, const unsigned char *bytes
   if (p.kind == CLOSE && old < s->count) abbe_inspect_close(s, old);
   if (p.kind == CREATE) result = create(s, &p, error);
   if (p.kind == OPEN || p.kind == OPEN_2) result = open_file(s, &p, error);
-  if (p.kind == RELOAD && old < s->count && !s->picture[old].sent) {
-    abbe_inspect_close(s, old);
-    result = abbe_inspect_open(s, p.name, error);
-  }
+  if (p.kind == RELOAD) result = reload(s, &p, error);
   if (p.kind == UPDATE || p.kind == UPDATE_2 || p.kind == UPDATE_3) result = update(s, &p, error);
   if (p.kind == VECTORS)
     result = abbe_error_set(error, ABBE_UNSUPPORTED, "%s: drawings over it are not shown", p.name);
   const size_t at = find(s, p.name);
-  if (result == ABBE_OK && p.focus) *focus = at < s->count ? at : s->count - 1;
+  if (result == ABBE_OK && p.focus && at < s->count) *focus = at;
   return result;
 }

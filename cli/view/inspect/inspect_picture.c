@@ -260,7 +260,7 @@ static abbe_result begin_picture(abbe_inspect *s, const char *path, abbe_inspect
     return abbe_error_set(error, ABBE_OUT_OF_RANGE, "%s: at most %d pictures are looked at at once",
                           path, ABBE_INSPECT_MOST_PICTURES);
   abbe_inspect_picture *p = *out = &s->picture[s->count];
-  *p = (abbe_inspect_picture){.own = strdup(path)};
+  *p = (abbe_inspect_picture){.own = strdup(path), .serial = ++s->made};
   p->path = p->own;
   return p->own != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", path);
 }
@@ -318,6 +318,16 @@ void abbe_inspect_close(abbe_inspect *s, size_t at) {
   if (s->other > at || s->other == s->count) s->other -= s->other > 0;
   for (size_t i = 0; i < s->count; i++) s->picture[i].look.display = NULL;
   if (s->look.difference) s->picture[s->at].other = s->other;
+}
+
+void abbe_inspect_replace(abbe_inspect *s, size_t at) {
+  const size_t last = s->count - 1;
+  if (at == last) return;
+  if (s->at == at || s->other == at) s->look.difference = false;
+  free_picture(&s->picture[at]);
+  s->picture[at] = s->picture[last];
+  s->picture[last] = (abbe_inspect_picture){0};
+  abbe_inspect_close(s, last);
 }
 
 void abbe_inspect_free(abbe_inspect *inspect) {

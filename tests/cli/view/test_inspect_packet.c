@@ -103,3 +103,71 @@ TEST(a_picture_that_is_taken_off_another_may_be_closed) {
   assert_false(s.look.difference);
   assert_int_equal(focus, 99);
 }
+
+/* It stays where it is, also where it is what is shown or has another size. */
+TEST(a_picture_that_is_made_again_keeps_its_place) {
+  OWNED(abbe_inspect, s) = {.count = 0};
+  unsigned char out[8];
+  size_t focus = 99;
+  for (const char *name = "abcdefghijklmno"; *name != '\0'; name++) {
+    char packet[] = CREATE("?", "\2");
+    packet[6] = *name;
+    OK(TAKE(&s, packet));
+  }
+  OK(TAKE(&s, UPDATE("b")));
+  see(&s, 1, false, out);
+  assert_int_equal(out[4], 255);
+  const size_t serial = s.picture[1].serial;
+  OK(TAKE(&s, CREATE("b", "\3")));
+  assert_true(s.at == 1 && s.count == 15);
+  assert_string_equal(s.picture[1].path, "b");
+  assert_int_equal(s.picture[1].width, 3);
+  assert_int_not_equal(s.picture[1].serial, serial);
+  see(&s, 1, false, out);
+  assert_int_equal(out[4], 0);
+  /* where there are as many as there may be it becomes the last one */
+  OK(TAKE(&s, CREATE("p", "\2")));
+  OK(TAKE(&s, CREATE("b", "\2")));
+  assert_string_equal(s.picture[15].path, "b");
+  REFUSED(ABBE_OUT_OF_RANGE, "at most 16", TAKE(&s, CREATE("q", "\2")));
+  assert_int_equal(focus, 99);
+}
+
+/* w420nm and the like are kept as S0.420nm; they are still sent by their own names. */
+TEST(bands_of_another_name_are_updated_by_it) {
+  OWNED(abbe_inspect, s) = {.count = 0};
+  size_t focus = 99;
+  OK(TAKE(&s, "\42\0\0\0\4\1a\0\2\0\0\0\1\0\0\0\2\0\0\0w420nm\0w430nm\0"));
+  assert_string_equal(s.picture[0].image.channel[1], "S0.430nm");
+#define BAND(name) "\43\0\0\0\3\1a\0" name "\0\1\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0\0\0\200\77"
+  OK(TAKE(&s, BAND("w430nm")));
+  assert_near(s.picture[0].image.data[3], 1, 0);
+  REFUSED(ABBE_NOT_FOUND, "no channel 'w440nm'", TAKE(&s, BAND("w440nm")));
+}
+
+/* What cannot be read again stays; what is there is shown, whatever stands behind its name. */
+TEST(files_that_packets_name) {
+  OWNED(abbe_inspect, s) = {.count = 0};
+  static const char path[] = "p.hdr";
+  static const unsigned char pixels[8] = {128, 128, 128, 129, 64, 64, 64, 129};
+  size_t focus = 99;
+  FILE *file = fopen(path, "wb");
+  fputs("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n", file);
+  assert_int_equal(fwrite(pixels, 1, sizeof pixels, file), sizeof pixels);
+  fclose(file);
+  OK(TAKE(&s, "\14\0\0\0\0\0p.hdr\0"));
+  OK(TAKE(&s, CREATE("a", "\2")));
+  OK(TAKE(&s, "\16\0\0\0\0\1p.hdr:R\0"));
+  assert_true(s.count == 2 && focus == 0);
+  assert_near(s.picture[0].image.data[3], 0.5, 0);
+  file = fopen(path, "r+b");
+  assert_int_equal(fseek(file, -4, SEEK_END), 0);
+  assert_int_equal(fwrite(pixels, 1, 4, file), 4);
+  fclose(file);
+  OK(TAKE(&s, "\14\0\0\0\1\0p.hdr\0"));
+  assert_string_equal(s.picture[0].path, path);
+  assert_near(s.picture[0].image.data[3], 1, 0);
+  remove(path);
+  REFUSED(ABBE_IO, path, TAKE(&s, "\14\0\0\0\1\0p.hdr\0"));
+  assert_string_equal(s.picture[0].path, path);
+}
