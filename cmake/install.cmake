@@ -2,7 +2,6 @@
 # them.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
-# What needs MPI is a component, and so a package, of its own.
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME main)
 
 # One library from the objects of every room, of which only what library/lib_*.h declares is to be seen.

@@ -23,8 +23,9 @@ typedef struct abbe_lib_picture abbe_lib_picture;
 abbe_result abbe_lib_picture_make(size_t width, size_t height, size_t channels,
                                   const char *const *names, const float *pixels,
                                   abbe_lib_picture **out, abbe_error *error);
-/* An OpenEXR file as it is, its channels in the order of their names; a .png as sRGB-encoded values
- * from 0 to 1. ABBE_IO, ABBE_PARSE, ABBE_UNSUPPORTED. */
+/* An OpenEXR file as it is, its channels in the order of their names; a Radiance picture; an ENVI
+ * header's cube, its bands as channels; a .png as sRGB-encoded values from 0 to 1. ABBE_IO,
+ * ABBE_PARSE, ABBE_UNSUPPORTED; of ENVI also ABBE_NOT_FOUND and ABBE_INVALID_ARGUMENT. */
 abbe_result abbe_lib_picture_load(const char *path, abbe_lib_picture **out, abbe_error *error);
 void abbe_lib_picture_free(abbe_lib_picture *picture);
 

@@ -124,7 +124,7 @@ def of_pointer(pointer):
 
 
 def load(path):
-    """A picture from an OpenEXR or PNG file."""
+    """A picture from an OpenEXR, Radiance or PNG file, or by the header of an ENVI cube."""
     pointer = c_void_p()
     call("picture_load", required(path, "path"), byref(pointer))
     return of_pointer(pointer)
