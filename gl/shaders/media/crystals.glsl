@@ -112,7 +112,8 @@ vec2 wave_film_shares(Crystal c, int r, int film, bool outside, float cos_i, flo
   vec4 of = texelFetch(film_texels, r);
   float here = inversesqrt(c.inverse.y), other = inversesqrt(of.z > 0.0 ? c.inverse.z : c.inverse.x);
   float part = other == here ? 0.0 : clamp((n - here) / (other - here), -1.0, 1.0);
-  return mix(shares, film_shares(film + int(of.y), outside, cos_i, n), part);
+  // Beyond the two what is mirrored may come out below 0.
+  return max(mix(shares, film_shares(film + int(of.y), outside, cos_i, n), part), 0.0);
 }
 #endif
 
