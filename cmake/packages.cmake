@@ -28,6 +28,8 @@ endif()
 # For abbe view, with EGL; without them all else builds.
 pkg_check_modules(GLFW IMPORTED_TARGET glfw3)
 pkg_check_modules(IMGUI IMPORTED_TARGET imgui)
+# For abbe view --serve alone.
+pkg_check_modules(MICROHTTPD IMPORTED_TARGET libmicrohttpd)
 # For AVIF, JPEG and WebP files; without them all else is written.
 pkg_check_modules(AVIF IMPORTED_TARGET libavif)
 pkg_check_modules(JPEG IMPORTED_TARGET libjpeg)

@@ -121,7 +121,7 @@ add_test(NAME reference_broken_wavelengths
           --broken prism --wavelengths 1)
 abbe_label(program NAMES reference_broken_exits reference_broken_wavelengths)
 
-foreach(name inspect_packet view_camera view_document view_feed view_files view_inspect view_outline view_pace view_painter view_refine
+foreach(name inspect_packet view_camera view_document view_events view_feed view_files view_guard view_inspect view_outline view_pace view_painter view_refine
     view_scene view_state)
   abbe_test(${name} cpu abbe_view_state abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
@@ -150,6 +150,9 @@ if(ABBE_VIEWER)
   abbe_test(view_look gl abbe_view_work abbe_view_state abbe_gl abbe_validation abbe_scenes
     abbe_colorimetry abbe_spectral abbe_base)
   set_tests_properties(view_window PROPERTIES SKIP_RETURN_CODE 77)
+  add_test(NAME view_serve COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/view/serve
+    $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR} $<IF:$<BOOL:${MICROHTTPD_FOUND}>,yes,no>)
+  abbe_label(program NAMES view_serve)
   add_test(NAME view_listen COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/view/listen $<TARGET_FILE:abbe>)
   abbe_label(program NAMES view_listen)
 endif()

@@ -28,6 +28,7 @@ enum {
   OPTION_LAST,
   OPTION_MATERIALS,
   OPTION_OCIO,
+  OPTION_SERVE,
   OPTION_LISTEN,
   OPTION_VOLUME,
   OPTION_WAVELENGTHS,
@@ -44,7 +45,7 @@ typedef struct view_options {
   size_t pictures;
   const char *program, *scene, *script, *keep, *materials, *ocio, *volume;
   size_t width, height, wavelengths, photons, map_size;
-  int last, listen; /* listen below 0: to nothing */
+  int last, port, listen; /* ports below 0: nothing is served, or listened to */
   abbe_scene_input_changes changes;
 } view_options;
 
@@ -71,6 +72,10 @@ static const struct argp_option options[] = {
     {"map", OPTION_MAP, "N", 0, "texels a side, so too", 1},
     {"script", OPTION_SCRIPT, "FILE", ABBE_ARGUMENT_READS,
      "lead the viewer by a script, without a display", 2},
+    {"serve", OPTION_SERVE, "PORT", 0,
+     "without a display: a page for a browser on this machine, its address with a token on "
+     "standard output; 0: any free port",
+     2},
     {"listen", OPTION_LISTEN, "PORT", OPTION_ARG_OPTIONAL,
      "show the pictures that programs on this machine send by tev's protocol (14158); 0: any free "
      "port; it is said on standard output",
@@ -142,6 +147,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   view_options *o = state->input;
   if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
+  case OPTION_SERVE:
+    o->port = (int)abbe_command_count(o->program, "--serve", text, 0, 65535);
+    return 0;
   case OPTION_LISTEN:
     o->listen = 14158;
     if (text != NULL) o->listen = (int)abbe_command_count(o->program, "--listen", text, 0, 65535);
@@ -159,10 +167,11 @@ static error_t parse(int key, char *text, struct argp_state *state) {
           state,
           "which scene? Give a file such as scenes/gem.yaml, a stone's such as round.asc, or "
           "pictures such as bands.exr");
-    if (!looks_at_pictures(o) && o->changes.studio.material != NULL &&
-        !abbe_studio_is_stone(o->scene))
+    if (!looks_at_pictures(o) && o->changes.studio.material != NULL && !abbe_studio_is_stone(o->scene))
       argp_error(state, "--material is for a stone's file; of a scene's object NAME it is --set "
                         "objects.NAME.material=STONE");
+    if (o->script != NULL && o->port >= 0)
+      argp_error(state, "--script or --serve, not both lead one viewer");
     return 0;
   default:
     return abbe_scene_input_take(&o->changes, key, text, o->program);
@@ -226,6 +235,7 @@ static void return_pictures(void) {
 
 static abbe_result run(const view_options *o, const abbe_view_app_desc *desc, abbe_error *error) {
   if (o->script != NULL) return abbe_view_script_run(o->script, desc, o->width, o->height, error);
+  if (o->port >= 0) return abbe_view_serve_run((unsigned)o->port, desc, o->width, o->height, error);
   return abbe_view_window_run(desc, o->width, o->height, error);
 }
 
@@ -342,13 +352,14 @@ int abbe_command_view(int argc, char **argv) {
       "  abbe view scenes/gem.yaml --set objects.gem.material=diamond --size 1200x800\n"
       "  abbe view scenes/gem.yaml --script tour.txt\n"
       "  abbe view docs/examples/ball.yaml --volume ball-volume.exr\n"
+      "  abbe view scenes/gem.yaml --serve 8080\n"
       "  abbe view bands.exr --lit-by D65 --illuminant A\n"
       "  abbe view before.exr after.exr",
       children,
       NULL,
       NULL};
   view_options o = {
-      .program = argv[0], .spectral.program = argv[0], .width = 900, .height = 560, .listen = -1};
+      .program = argv[0], .spectral.program = argv[0], .width = 900, .height = 560, .port = -1, .listen = -1};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &o);
   abbe_error error = {0};
   const abbe_result result = view(&o, &error);

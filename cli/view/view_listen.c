@@ -1,6 +1,7 @@
 #include "cli/view/view_app.h"
 
-#include <arpa/inet.h>
+#include "cli/view/state/view_guard.h"
+
 #include <errno.h>
 #include <poll.h>
 #include <stdio.h>
@@ -80,8 +81,7 @@ static bool take_packets(abbe_view_listener *l, sender *s, abbe_error *why) {
   size_t at = 0;
   while (s->size - at >= 4) {
     const unsigned char *c = s->bytes + at;
-    const size_t length =
-        (size_t)c[0] | (size_t)c[1] << 8 | (size_t)c[2] << 16 | (size_t)c[3] << 24;
+    const size_t length = (size_t)c[0] | (size_t)c[1] << 8 | (size_t)c[2] << 16 | (size_t)c[3] << 24;
     if (length < 5 || length > MOST_PACKET) {
       abbe_error_set(why, ABBE_PARSE, "a packet of %zu bytes is refused; 5 to %zu are right",
                      length, MOST_PACKET);
@@ -140,26 +140,6 @@ static void *listen_to_all(void *user) {
   return NULL;
 }
 
-/* A socket that listens at that port of 127.0.0.1 and does not wait; the caller closes it, also
- * after an error where it is not below 0. *port 0 becomes a free one. */
-static abbe_result open_port(unsigned *port, int *out, abbe_error *error) {
-  const int yes = 1;
-  struct sockaddr_in place = {.sin_family = AF_INET, .sin_port = htons((uint16_t)*port)};
-  socklen_t size = sizeof place;
-  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  *out = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (*out < 0) return abbe_error_set(error, ABBE_IO, "no socket to listen: %s", strerror(errno));
-  setsockopt(*out, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  if (bind(*out, (struct sockaddr *)&place, sizeof place) != 0 || listen(*out, SOMAXCONN) != 0 ||
-      getsockname(*out, (struct sockaddr *)&place, &size) != 0)
-    return abbe_error_set(error, ABBE_IO,
-                          "port %u of 127.0.0.1 cannot be served, it may be in use; choose "
-                          "another, or 0 for any",
-                          *port);
-  *port = ntohs(place.sin_port);
-  return ABBE_OK;
-}
-
 abbe_result abbe_view_listen_begin(unsigned *port, abbe_view_listener **out, abbe_error *error) {
   abbe_view_listener *l = calloc(1, sizeof *l);
   *out = l;
@@ -167,7 +147,7 @@ abbe_result abbe_view_listen_begin(unsigned *port, abbe_view_listener **out, abb
   for (size_t i = 0; i < MOST; i++) l->from[i].socket = -1;
   pthread_mutex_init(&l->lock, NULL);
   pthread_cond_init(&l->taken, NULL);
-  return open_port(port, &l->socket, error);
+  return abbe_view_guard_listen(port, &l->socket, error);
 }
 
 abbe_result abbe_view_listen_start(abbe_view_listener *l, void (*wake)(void), abbe_error *error) {

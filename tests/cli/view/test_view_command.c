@@ -270,9 +270,11 @@ TEST(wrong_use) {
   assert_true(run_refuses(VIEW "--photons 0", 2, "--photons"));
   assert_true(run_refuses(VIEW "--wavelengths few", 2, "--wavelengths"));
   assert_true(run_refuses(VIEW "--map 5000", 2, "--map"));
+  assert_true(run_refuses(VIEW "--serve 65536", 2, "--serve"));
   assert_true(run_refuses(VIEW "a.exr", 2, "leave out"));
   assert_true(run_refuses("\"$abbe\" view a.exr --last moving", 2, "leave out --last"));
   assert_true(run_refuses(VIEW "--observer 1964", 2, "pictures of bands"));
+  assert_true(run_refuses(VIEW "--serve 0 --script a.txt", 2, "not both"));
 }
 
 GROUP(run_setup, run_teardown);
