@@ -212,8 +212,10 @@ class Commands(unittest.TestCase):
 
     def test_names_that_mean_something_in_yaml(self):
         os.rename("hill.png", "a: b #.png")
+        with open("my own.yaml", "w", encoding="utf-8") as file:
+            file.write("materials: [{name: 'no', model: constant, coefficients: [1.5], source: here}]\n")
         code, _, wrong = run("pane", "a: b #.png", "-o", 'p "#1.obj', "--scene", "p.yaml", "--light",
-                             "-0.02,-0.01,0.8")
+                             "-0.02,-0.01,0.8", "--materials", "my own.yaml", "--material", "no")
         self.assertEqual((code, wrong), (0, ""))
         self.assertGreater(abbe.Scene("p.yaml").plan()["mesh_faces"], 2 * (ROWS - 1) * (COLUMNS - 1))
 

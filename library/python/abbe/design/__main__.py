@@ -246,8 +246,10 @@ def _pane(argv):
     for name in q.output:
         _write(name, (solid.obj if name in meshes else solid.stl)(face))
     if q.scene:
-        mesh = os.path.relpath(meshes[0], os.path.dirname(q.scene) or ".")
-        _write(q.scene, solid.scene(setup, mesh, q.material,
+        folder = os.path.dirname(q.scene) or "."
+        table = (q.materials if q.materials in ("default", "thesis")
+                 else os.path.relpath(q.materials, folder))
+        _write(q.scene, solid.scene(setup, os.path.relpath(meshes[0], folder), table, q.material,
                                     f"a pane that throws {os.path.basename(q.target)}")
                .encode(errors="surrogateescape"))
     if q.png:

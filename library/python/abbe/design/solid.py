@@ -62,7 +62,7 @@ def stl(face):
     return head + struct.pack("<I", len(triangles)) + out.tobytes()
 
 
-def scene(setup, mesh, material, name):
+def scene(setup, mesh, table, material, name):
     """The text of a scene in which the pane's light falls on a screen that fills the picture."""
     x, y = setup.middle[0], -setup.middle[1]
     rows, columns = setup.shape
@@ -71,9 +71,11 @@ def scene(setup, mesh, material, name):
              else "kind: point\n    position: [%.9g, %.9g, %.9g]\n    intensity: %.9g"
              % (*setup.lamp, setup.lamp[2]**2))
     tall = setup.pixel * rows
-    name, mesh, material = (json.dumps(text, ensure_ascii=False) for text in (name, mesh, material))
+    name, mesh, table, material = (json.dumps(text, ensure_ascii=False)
+                                   for text in (name, mesh, table, material))
     return f"""\
 description: {name}
+materials: {table}
 camera:
   eye: [{x:.9g}, {y:.9g}, {high - setup.distance:.9g}]
   target: [{x:.9g}, {y:.9g}, {-setup.distance:.9g}]
