@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
+#include <sys/stat.h>
 
 enum { MOST_HEADER = 1 << 20, LONGEST_KEY = 64, BANDS = ABBE_IMAGE_MAX_CHANNELS };
 
@@ -281,7 +281,9 @@ static abbe_result open_cube(const header *h, FILE **cube, size_t *size, char *n
   const bool named = own > 0 && strcasecmp(h->path + own, ".hdr") == 0;
   for (size_t i = 0; named && i < sizeof endings / sizeof *endings; i++) {
     snprintf(name, longest, "%.*s%s", (int)own, h->path, endings[i]);
-    if (access(name, F_OK) == 0) return abbe_file_open(name, cube, size, error);
+    struct stat info; /* a folder may have the name too */
+    if (stat(name, &info) == 0 && !S_ISDIR(info.st_mode))
+      return abbe_file_open(name, cube, size, error);
   }
   return refuse(h, ABBE_NOT_FOUND, error,
                 "there is no cube beside this header: %.*s, alone or with .img, .raw, .dat, .bin, "

@@ -6,6 +6,7 @@
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/picture_file.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 static char folder[] = "/tmp/abbe-test-envi-XXXXXX";
@@ -160,9 +161,12 @@ TEST(what_a_header_says_wrongly_is_refused_by_its_line) {
     REFUSED(cases[i].code, cases[i].says, abbe_picture_file_read(path, &image, &error));
     assert_null(image.data);
   }
-  unlink(printed("%s/cube.raw", folder));
   abbe_image image;
-  write_cube("ENVI\n" SIZES "interleave = bip\ndata type = 4\n", 4, false, "bip", 0);
+  assert_int_equal(mkdir(printed("%s/cube", folder), 0700), 0);
+  OK(abbe_picture_file_read(
+      write_cube("ENVI\n" SIZES "interleave = bip\ndata type = 4\n", 4, false, "bip", 0), &image,
+      &error));
+  abbe_image_free(&image);
   unlink(printed("%s/cube.raw", folder));
   REFUSED(ABBE_NOT_FOUND, "there is no cube beside",
           abbe_picture_file_read(printed("%s/cube.hdr", folder), &image, &error));
