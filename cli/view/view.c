@@ -167,7 +167,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
           state,
           "which scene? Give a file such as scenes/gem.yaml, a stone's such as round.asc, or "
           "pictures such as bands.exr");
-    if (!looks_at_pictures(o) && o->changes.studio.material != NULL && !abbe_studio_is_stone(o->scene))
+    if (!looks_at_pictures(o) && o->changes.studio.material != NULL &&
+        !abbe_studio_is_stone(o->scene))
       argp_error(state, "--material is for a stone's file; of a scene's object NAME it is --set "
                         "objects.NAME.material=STONE");
     if (o->script != NULL && o->port >= 0)
@@ -358,8 +359,12 @@ int abbe_command_view(int argc, char **argv) {
       children,
       NULL,
       NULL};
-  view_options o = {
-      .program = argv[0], .spectral.program = argv[0], .width = 900, .height = 560, .port = -1, .listen = -1};
+  view_options o = {.program = argv[0],
+                    .spectral.program = argv[0],
+                    .width = 900,
+                    .height = 560,
+                    .port = -1,
+                    .listen = -1};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &o);
   abbe_error error = {0};
   const abbe_result result = view(&o, &error);

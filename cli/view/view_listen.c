@@ -81,7 +81,8 @@ static bool take_packets(abbe_view_listener *l, sender *s, abbe_error *why) {
   size_t at = 0;
   while (s->size - at >= 4) {
     const unsigned char *c = s->bytes + at;
-    const size_t length = (size_t)c[0] | (size_t)c[1] << 8 | (size_t)c[2] << 16 | (size_t)c[3] << 24;
+    const size_t length =
+        (size_t)c[0] | (size_t)c[1] << 8 | (size_t)c[2] << 16 | (size_t)c[3] << 24;
     if (length < 5 || length > MOST_PACKET) {
       abbe_error_set(why, ABBE_PARSE, "a packet of %zu bytes is refused; 5 to %zu are right",
                      length, MOST_PACKET);
