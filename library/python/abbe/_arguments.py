@@ -23,7 +23,7 @@ def near(text, names):
     return f"; did you mean '{best[0]}'?" if best else ""
 
 
-def count(option, least, most):
+def count(least, most):
     def read(text):
         try:
             value = int(text)

@@ -114,7 +114,7 @@ def _pane_parser():
         "bright as there is light for); what is left falls evenly on the picture")
     add("--depth", metavar="LENGTH", type=length, help="the deepest cut that can be made")
     add("--radius", metavar="LENGTH", type=length, help="the smallest radius that can be cut")
-    add("--cells", metavar="N", type=count("cells", 16, 2048),
+    add("--cells", metavar="N", type=count(16, 2048),
         help="places across that the height is known at (1.5 a pixel)")
     add("-q", "--quiet", action="store_true", help="no progress")
     return out
@@ -340,7 +340,7 @@ def _achromat(argv):
     add("--deviation", metavar="DEG", type=degrees(0, 90), help="of the pair of prisms, of the line d")
     add("--focal", metavar="LENGTH", type=length, help="of the pair of lenses, at the line d")
     add("--glasses", metavar="A,B", help="two or more, comma-separated (all clear ones)")
-    add("--count", metavar="N", type=count("count", 1, 100000), default=5,
+    add("--count", metavar="N", type=count(1, 100000), default=5,
         help="pairs that are shown (5)")
     q = parser.known(argv)
     if (q.deviation is None) == (q.focal is None):

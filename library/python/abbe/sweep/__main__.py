@@ -45,7 +45,7 @@ def _list(axis):
         if isinstance(limits[0], str):
             return [choice(*limits)(word) for word in words]
         if axis != "share":
-            return [count(axis, *limits)(word) for word in words]
+            return [count(*limits)(word) for word in words]
         try:
             values = [float(word) for word in words]
         except ValueError:
@@ -126,7 +126,7 @@ def _parser():
             ("history", "frames that a picture is made of, 1 to 4: the error after 1, 2, 4 and 8"),
             ("passes", "of the tracer, each of photons x photons photons")):
         add("--" + axis, metavar="LIST", type=_list(axis), help=words)
-    add("--frames", metavar="N", type=count("frames", 1, 1000), default=5,
+    add("--frames", metavar="N", type=count(1, 1000), default=5,
         help="warm up, then the median of N (5)")
     add("--processes", action="store_true", help="time whole processes too: warm ones, and cold "
         "ones of each contestant's front")
@@ -140,10 +140,10 @@ def _parser():
     add = out.add_argument_group("the reference").add_argument
     add("--reference", metavar="FILE.exr", help="a traced picture (traced and kept beside it)")
     add("--reference-map", metavar="FILE.exr", help="a traced receiver map")
-    add("--spp", metavar="N", type=count("spp", 2, 1000000), help="passes of the reference (64)")
-    add("--traced-photons", metavar="N", type=count("traced-photons", 1, 1 << 30),
+    add("--spp", metavar="N", type=count(2, 1000000), help="passes of the reference (64)")
+    add("--traced-photons", metavar="N", type=count(1, 1 << 30),
         help="photons a pass (1048576)")
-    add("--texels", metavar="N", type=count("texels", 1, 16384),
+    add("--texels", metavar="N", type=count(1, 16384),
         help="side of the reference's map (256)")
     add("--decompose", action="store_true", default=None,
         help="trace matched physics too: what is the model's, and what is sampling's?")
