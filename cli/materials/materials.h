@@ -29,7 +29,6 @@
   X(check, "what is wrong or doubtful in a table, and how to fix it")                              \
   X(fit, "a Cauchy or Sellmeier form through a material, a formula or points")                     \
   X(from, "a record from n_d and V_d, a gem's dispersion, A and B, or glTF's pair")                \
-  X(diff, "what differs between two tables, and by how much")                                      \
   X(set, "change values of a record, and nothing else in the file")                                \
   X(add, "add a record to a table, new or from another table")                                     \
   X(remove, "take records out of a table")                                                         \

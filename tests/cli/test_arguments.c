@@ -97,7 +97,6 @@ static const struct named {
     {"materials fit", "points", READS},
     {"materials fit", "plot", WRITES},
     {"materials from", "known", READS},
-    {"materials diff", "", READS},
     {"materials set", "table", READS},
     {"materials add", "table", READS},
     {"materials add", "from", READS},

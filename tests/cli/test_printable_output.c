@@ -215,9 +215,9 @@ TEST(letters_pass) {
 TEST(binary_for_text) {
   static const char *const lines[] = {
       "materials import",        "materials fit --points",
-      "materials list --table",  "materials diff default",
-      "materials check --table", "plan",
-      "weights --illuminant",    "materials plot n-bk7 -o x.png --points"};
+      "materials list --table",  "plan",
+      "materials check --table", "materials plot n-bk7 -o x.png --points",
+      "weights --illuminant"};
   static const unsigned char xls[600] = {0xd0, 0xcf, 0x11, 0xe0, 0xa1, 0xb1, 0x1a, 0xe1, 0,    0,
                                          0,    0,    0,    0,    0,    0,    0x3e, 0,    0x03, 0,
                                          0xfe, 0xff, 9,    0,    '1',  0xc0, ' ',  '2',  '\n', '3'};

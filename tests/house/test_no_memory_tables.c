@@ -9,7 +9,6 @@
 #include "spectral/formats/material_write.h"
 #include "spectral/materials/convert.h"
 #include "spectral/materials/material_query.h"
-#include "spectral/materials/table_compare.h"
 #include "spectral/store/material_store.h"
 #include "spectral/wavelengths.h"
 
@@ -138,7 +137,6 @@ static abbe_result import_folder(abbe_error *error) {
 static abbe_result examine(abbe_error *error) {
   OWNED(abbe_material_table, table) = {0}, second = {0};
   OWNED(abbe_findings, findings) = {0};
-  OWNED(abbe_table_difference, difference) = {0};
   const abbe_material_query query = {.sort = ABBE_MATERIAL_KEY_ND};
   FREED size_t *rows = NULL;
   size_t count = 0;
@@ -148,8 +146,6 @@ static abbe_result examine(abbe_error *error) {
   if (result == ABBE_OK) result = abbe_check_table(&table, &second, &findings, error);
   for (size_t i = 0; i < findings.count && result == ABBE_OK; i++)
     digest_text(findings.finding[i].evidence);
-  if (result == ABBE_OK) result = abbe_table_compare(&table, &second, &difference, error);
-  if (result == ABBE_OK) digest(&difference.count, sizeof difference.count);
   if (result == ABBE_OK) result = abbe_material_query_run(&table, &query, &rows, &count, error);
   if (result == ABBE_OK) digest(rows, count * sizeof *rows);
   return result;

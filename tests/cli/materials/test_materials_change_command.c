@@ -1,8 +1,6 @@
 /* The verbs of `abbe materials` that change a table, as people meet them. */
 #include "tests/cli/run_program.h"
 
-#include <cjson/cJSON.h>
-
 #define TABLE " --table t.yaml"
 #define MATERIALS "\"$abbe\" materials "
 #define RENEW "cp \"$house\"/spectral/materials/thesis.yaml t.yaml && "
@@ -55,28 +53,6 @@ TEST(records_come_and_go) {
                                   "    model: constant\n    coefficients: [2]\n    source: s\n");
 }
 
-TEST(tables_are_compared) {
-  run_must(RENEW MATERIALS "diff thesis t.yaml --tolerance 0");
-  assert_string_equal(run_output, "thesis -> t.yaml: 0 changed, 0 renamed, 0 only in the first, 0 "
-                                  "only in the second, 5 the same\n");
-  assert_int_equal(run_line(MATERIALS "set k5 coefficients.0=1.5090" TABLE " && " MATERIALS
-                                      "diff thesis t.yaml"),
-                   0);
-  assert_contains(run_output, "~ k5: coefficients\n    n_d 1.535296 -> 1.522296, V_d 61.071 -> "
-                              "59.588\n    largest change of n 0.013, at ");
-  run_fails(MATERIALS "diff thesis t.yaml --tolerance 0.01", 3,
-            "the index of 'k5' changes by 0.013");
-  run_must(MATERIALS "diff thesis t.yaml --tolerance 0.02");
-  run_must(MATERIALS "diff thesis t.yaml --json");
-  cJSON *json = cJSON_Parse(run_output);
-  const cJSON *row = cJSON_GetArrayItem(cJSON_GetObjectItem(json, "rows"), 2);
-  assert_string_equal(cJSON_GetObjectItem(row, "kind")->valuestring, "changed");
-  assert_near(cJSON_GetObjectItem(row, "largest")->valuedouble, 0.013, 1e-12);
-  assert_near(cJSON_GetObjectItem(row, "mean")->valuedouble, -0.013, 1e-12);
-  cJSON_Delete(json);
-  run_must("rm t.yaml");
-}
-
 /* A copied record is the shipped one, comments and all. */
 TEST(a_copy_is_whole) {
   run_must(MATERIALS "add f2 --from default --create" TABLE
@@ -119,9 +95,6 @@ TEST(wrong_use_gets_a_sentence) {
       {MATERIALS "remove fused-silica bk7 k5 bak4 baf10" TABLE, "at least one", 1},
       {MATERIALS "set k5 name=BK7" TABLE, "is taken", 1},
       {MATERIALS "set k5 name=' x'" TABLE, "'name'", 1},
-      {MATERIALS "diff t.yaml", "Name two tables", 2},
-      {MATERIALS "diff t.yaml no.yaml", "no.yaml: cannot be opened", 1},
-      {MATERIALS "diff a b c", "one argument too many", 2},
   };
   run_must(RENEW "true");
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -135,8 +108,8 @@ TEST(wrong_use_gets_a_sentence) {
 
 /* Each line of the examples is a command or its next line: none was broken to fit the page. */
 TEST(help_shows_examples) {
-  const char *const verbs[] = {"list", "show", "plot", "nearest", "check",  "fit",   "from",
-                               "diff", "set",  "add",  "remove",  "import", "export"};
+  const char *const verbs[] = {"list", "show", "plot", "nearest", "check",  "fit",
+                               "from", "set",  "add",  "remove",  "import", "export"};
   for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++) {
     const char *line = printed(MATERIALS "%s --help", verbs[i]);
     const char *example = printed("  abbe materials %s ", verbs[i]);

@@ -63,13 +63,12 @@ TEST(a_folder_becomes_a_store) {
   assert_contains(run_output, "d-F2");
   runs(M "nearest --like one-Ann --like-table all.sqlite --count 1", "");
   runs(M "fit d-F2 --terms 3" T, "");
-  runs(M "diff all.sqlite all.sqlite", "");
-  assert_contains(run_output, "14 the same");
   assert_int_equal(run_line(M "check" T), 3);
   assert_contains(run_output, "all.sqlite: 14 rows, 2 wrong, 2 doubtful");
   runs(M "import all.sqlite -o again.sqlite && cmp all.sqlite again.sqlite && rm again.sqlite", "");
-  runs(M "export -o all.yaml" T " && " M "diff all.yaml all.sqlite && rm all.yaml", "");
-  assert_contains(run_output, "14 the same");
+  runs(M "export -o all.yaml" T " && " M "import all.yaml -o again.sqlite && " M
+         "export --table again.sqlite -o again.yaml && cmp all.yaml again.yaml && rm a*n.* all.yaml",
+       "14 materials in again.sqlite");
   runs(M "export one-ann --to yaml" T, "");
   assert_contains(run_output, "name: one-Ann\n");
   runs(M "add two-SF10 --from all.sqlite --as mine --table t.yaml --create temperature_c=21 && " M

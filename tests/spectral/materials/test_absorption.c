@@ -6,7 +6,6 @@
 #include "spectral/materials/absorption.h"
 #include "spectral/materials/material_query.h"
 #include "spectral/materials/partners.h"
-#include "spectral/materials/table_compare.h"
 #include "spectral/store/material_store.h"
 #include "tests/spectral/same_material.h"
 
@@ -316,22 +315,6 @@ TEST(no_glass_is_near_a_conductor) {
   MADE(abbe_glass_distances, d, abbe_glass_distance_to_numbers(&t, 1.5, 60, 0, &d, &error));
   assert_int_equal(d.count, 0);
   assert_int_equal(d.skipped, 0);
-}
-
-TEST(a_change_of_k_is_told) {
-  abbe_material a = gold(), b = gold();
-  double k[COUNT];
-  memcpy(k, gold_k, sizeof k);
-  k[3] += 0.1;
-  abbe_dispersion_free(&b.dispersion);
-  OK(abbe_conductor_make(gold_nm, gold_n, k, COUNT, &b.dispersion, &error));
-  OWNED(abbe_material_table, first) = table_of(&a), second = table_of(&b);
-  MADE(abbe_table_difference, d, abbe_table_compare(&first, &second, &d, &error));
-  assert_int_equal(d.row[0].parts, 1u << ABBE_ROW_PART_POINTS);
-  assert_true(isnan(d.row[0].index.max));
-  abbe_table_difference_free(&d);
-  OK(abbe_table_compare(&first, &first, &d, &error));
-  assert_int_equal(d.row[0].kind, ABBE_ROW_SAME);
 }
 
 TEST(the_check_knows_a_conductor) {
