@@ -59,15 +59,6 @@ int pixel_thread = int(gl_LocalInvocationID.x) % PIXEL_THREADS;
 // XYZ of what a band shows through the first interface, or off a mirror; or in_mirror: of what it shows
 // reflected by an interface, by unit share; mirrored: the share that is. both: of all that it shows, and nothing is mirrored.
 vec3 path_light(bool in_mirror, bool both, out float mirrored) {
-#ifdef ROUGH
-  if (is_rough(first.hit.refractor)) {
-    mirrored = 0.0;
-    return in_mirror ? vec3(0) : rough_shown();
-  }
-  lobe_u = lobe_way(0, lobe_shift);
-  lobe_ways = float(LOBE_WAYS);
-  lobe_width = 0.0;
-#endif
 #ifdef HAZE_BEYOND
   begin_haze(eye, sight, eye_inside == 0u ? first.hit.t : 0.0);
   start.haze_m = haze_begun;
@@ -100,6 +91,25 @@ vec3 path_light(bool in_mirror, bool both, out float mirrored) {
     reflected.share = 0.0;
   return shown(w, reflected);
 }
+
+#ifdef ROUGH
+// The same by several paths, where a rough mirror is met first; in a loop, for what is called twice is compiled twice.
+vec3 rough_light(bool in_mirror, bool both, out float mirrored) {
+  vec3 sum = vec3(0);
+  bool rough = is_rough(first.hit.refractor);
+  int paths = !rough ? 1 : in_mirror ? 0 : LOBE_WAYS;
+  lobe_ways = float(LOBE_WAYS);
+  lobe_width = mirrored = 0.0;
+  if (rough && !in_mirror) sum = lobe_shows(start, first, vec2(0.5 * pixel_angle));
+  for (int k = 0; k < paths; k++) {
+    lobe_u = lobe_way(k, lobe_shift);
+    lobe_width = 0.0;
+    sum += path_light(in_mirror, both, mirrored) / float(paths);
+  }
+  return sum;
+}
+#define path_light rough_light
+#endif
 
 vec3 band_light(int band, bool in_mirror, bool both, out float mirrored) {
   take_band(band_set, band - first_band(refractor));

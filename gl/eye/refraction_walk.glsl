@@ -109,23 +109,6 @@ Interface first;
 
 #ifdef ROUGH
 float lobe_shift;  // shift for the pixel
-
-// The light of a rough mirror that is met first.
-vec3 rough_shown() {
-  lobe_ways = float(LOBE_WAYS);
-  lobe_width = 0.0;
-  vec3 sum = lobe_shows(start, first, vec2(0.5 * pixel_angle));
-  for (int k = 0; k < LOBE_WAYS; k++) {
-    lobe_u = lobe_way(k, lobe_shift);
-    lobe_width = 0.0;
-    PathState way = start;
-    reflect_off(way, first);
-    PathState none = way;
-    none.share = 0.0;
-    sum += shown(way, none) / float(LOBE_WAYS);
-  }
-  return sum;
-}
 #endif
 
 void begin_path(ivec2 at) {

@@ -33,13 +33,14 @@ vec3 lobe_shows(PathState w, Interface h, vec2 wider) {
   vec3 sum = vec3(0);
   for (int i = 0; i < LIGHTS; i++) {
     LampRay l = lobe_shows_lamp(i, m, facets, w, h);
+    vec3 light = in_band(l.ray, l.shown);  // before the search, which then keeps less
     Interface between;
     between.hit.t = l.distance_m;
     if (l.e <= 0.0 || next_interface(l.ray, between) ||
         receiver_between(l.ray.p, l.ray.d, 1e-4 * refractor_bounds.w, l.distance_m) ||
         !area_lights_lit(i, l.ray.p, -l.ray.d, l.distance_m))
       continue;
-    sum += in_band(l.ray, l.shown);
+    sum += light;
   }
   return sum;
 }
