@@ -150,7 +150,8 @@ abbe_result abbe_text_diff(const char *before, size_t before_size, const char *a
     fprintf(stream, "--- %s\n+++ %s\n", path, path);
     print_hunks(stream, a, b);
   }
-  if (stream != NULL) good = !ferror(stream) & (fclose(stream) == 0) & good;
+  good = good && !ferror(stream);
+  if (stream != NULL) good = fclose(stream) == 0 && good;
   free(a.at);
   free(b.at);
   if (good) return ABBE_OK;

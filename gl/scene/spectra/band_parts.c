@@ -209,3 +209,86 @@ double abbe_band_share_depth(const abbe_band_steps *steps, const abbe_band_share
   }
   return all > 0 ? least - log(left / all) : -1;
 }
+
+/* A passage: through two surfaces, so many usual paths in each. */
+typedef struct passage {
+  size_t surface[2];
+  double length[2];
+} passage;
+
+/* Normal equations of what parts should hold: right is of X, Y and Z. */
+typedef struct equations {
+  double square[ABBE_BAND_PARTS][ABBE_BAND_PARTS], right[3][ABBE_BAND_PARTS];
+} equations;
+
+/* What the parts leave after a passage is to be what the band leaves; by brightness, long passages
+ * would not count. */
+static void add_passage(const abbe_band_steps *s, const abbe_band_share *band, const passage *p,
+                        equations *to) {
+  const double *first = s->depth + p->surface[0] * s->count + band->first;
+  const double *second = s->depth + p->surface[1] * s->count + band->first;
+  const double weight = 1 + p->length[0] + p->length[1];
+  double left[ABBE_BAND_PARTS], xyz[3] = {0};
+  for (size_t k = 0; k < ABBE_BAND_PARTS; k++)
+    left[k] =
+        exp(-p->length[0] * s->mean[p->surface[0]][k] - p->length[1] * s->mean[p->surface[1]][k]);
+  for (size_t i = 0; i < band->end - band->first; i++) {
+    const double by = exp(-p->length[0] * first[i] - p->length[1] * second[i]);
+    for (int c = 0; c < 3; c++) xyz[c] += share_at(band, i) * by * s->xyz[band->first + i][c];
+  }
+  for (size_t k = 0; k < ABBE_BAND_PARTS; k++) {
+    for (size_t j = 0; j < ABBE_BAND_PARTS; j++) to->square[k][j] += weight * left[k] * left[j];
+    for (int c = 0; c < 3; c++) to->right[c][k] += weight * left[k] * xyz[c];
+  }
+}
+
+/* The parts' light by least squares; of parts that are not used, none. */
+static void solve(const equations *e, int c, const bool used[ABBE_BAND_PARTS],
+                  double out[ABBE_BAND_PARTS]) {
+  double m[ABBE_BAND_PARTS][ABBE_BAND_PARTS + 1] = {{0}};
+  for (size_t k = 0; k < ABBE_BAND_PARTS; k++) {
+    for (size_t j = 0; j < ABBE_BAND_PARTS; j++) m[k][j] = used[k] && used[j] ? e->square[k][j] : 0;
+    m[k][k] = used[k] ? m[k][k] * (1 + 1e-9) + 1e-30 : 1; /* two parts may be alike */
+    m[k][ABBE_BAND_PARTS] = used[k] ? e->right[c][k] : 0;
+  }
+  for (size_t k = 0; k < ABBE_BAND_PARTS; k++)
+    for (size_t row = 0; row < ABBE_BAND_PARTS; row++) {
+      const double by = row == k ? 0 : m[row][k] / m[k][k];
+      for (size_t j = k; j <= ABBE_BAND_PARTS; j++) m[row][j] -= by * m[k][j];
+    }
+  for (size_t k = 0; k < ABBE_BAND_PARTS; k++) out[k] = m[k][ABBE_BAND_PARTS] / m[k][k];
+}
+
+/* Parts whose light would be below 0 have none, one after the other. */
+static void solve_positive(const equations *e, int c, double out[ABBE_BAND_PARTS]) {
+  bool used[ABBE_BAND_PARTS];
+  size_t least = 0;
+  for (size_t k = 0; k < ABBE_BAND_PARTS; k++) used[k] = true;
+  do {
+    solve(e, c, used, out);
+    for (size_t k = 0; k < ABBE_BAND_PARTS; k++) least = out[k] < out[least] ? k : least;
+    used[least] = false;
+  } while (out[least] < 0);
+}
+
+void abbe_band_parts_fit(const abbe_band_steps *s, const abbe_band_share *band,
+                         double xyz[ABBE_BAND_PARTS][3]) {
+  static const double length[] = {0, 0.2, 0.5, 1, 2, 4};
+  equations e = {0};
+  size_t before = s->surfaces;
+  for (size_t r = 0; r < s->surfaces; r++) {
+    if (!s->splits[r]) continue;
+    for (size_t l = 0; l < sizeof length / sizeof *length; l++) {
+      add_passage(s, band, &(passage){{r, r}, {length[l], 0}}, &e);
+      if (before < s->surfaces)
+        add_passage(s, band, &(passage){{r, before}, {0.5 * length[l], 0.5 * length[l]}}, &e);
+    }
+    before = r;
+  }
+  for (int c = 0; c < 3; c++) {
+    double all = 0, fitted = 0, part[ABBE_BAND_PARTS];
+    solve_positive(&e, c, part);
+    for (size_t k = 0; k < ABBE_BAND_PARTS; k++) all += xyz[k][c], fitted += part[k];
+    for (size_t k = 0; k < ABBE_BAND_PARTS && fitted > 0; k++) xyz[k][c] = part[k] * all / fitted;
+  }
+}

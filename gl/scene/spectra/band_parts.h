@@ -30,7 +30,7 @@ typedef struct abbe_band_steps {
   double *depth;  /* [surfaces][count] optical depth of path_m, or of one reflection straight on */
   double *path_m; /* [surfaces] a usual path inside, m; 0 of a mirror */
   bool *splits; /* [surfaces] what it takes counts where parts are made: not what repeats others */
-  double (*mean)[ABBE_BAND_PARTS]; /* [surfaces] of parts while they are found */
+  double (*mean)[ABBE_BAND_PARTS]; /* [surfaces] of parts while they are found, then their depth */
 } abbe_band_steps;
 
 /* Makes so many steps for the plan's surfaces. ABBE_NO_MEMORY; abbe_band_steps_free also
@@ -64,5 +64,11 @@ void abbe_band_share_xyz(const abbe_band_steps *steps, const abbe_band_share *ba
  * reflection; below 0: it has no steps. */
 double abbe_band_share_depth(const abbe_band_steps *steps, const abbe_band_share *band,
                              size_t surface);
+
+/* The parts' light for which paths of no length to four usual ones, in one surface and in two,
+ * leave what they leave of the whole band: none is below 0, and all together have the band's.
+ * steps->mean: the parts' depths; xyz: of each part the light in it, then what it counts as. */
+void abbe_band_parts_fit(const abbe_band_steps *steps, const abbe_band_share *band,
+                         double xyz[ABBE_BAND_PARTS][3]);
 
 #endif

@@ -317,19 +317,22 @@ static void fill_parts(band_set *s, const level_band *b, abbe_camera_band *band,
   for (size_t r = 0; r < refractors; r++)
     band[r * apart].surface[s->plan->mirror[r] ? 1 : 0] =
         (float)surface_of(s, r, &band[r * apart], abbe_band_share_depth(&s->steps, &whole, r));
+  double xyz[ABBE_BAND_PARTS][3];
   for (unsigned p = 0; p < ABBE_BAND_PARTS; p++) {
     const abbe_band_share one = {from, to, s->share, s->part, p};
-    double xyz[3];
-    abbe_band_share_xyz(&s->steps, &one, xyz);
-    for (unsigned c = 0; c < 3; c++) light[2 * c + p / 4][p % 4] = (float)xyz[c];
+    abbe_band_share_xyz(&s->steps, &one, xyz[p]);
     for (size_t r = 0; r < s->steps.surfaces; r++) {
-      const double depth = abbe_band_share_depth(&s->steps, &one, r);
-      const abbe_band_share *of = depth < 0 ? &whole : &one;
+      const double own = abbe_band_share_depth(&s->steps, &one, r);
+      const double depth = own < 0 ? abbe_band_share_depth(&s->steps, &whole, r) : own;
       const size_t light_texels = r < refractors ? 0 : ABBE_PART_LIGHT_TEXELS * apart;
-      texel[light_texels + ABBE_PART_TEXELS * r * apart + p / 4][p % 4] = (float)surface_of(
-          s, r, &band[r % refractors * apart], abbe_band_share_depth(&s->steps, of, r));
+      s->steps.mean[r][p] = depth;
+      texel[light_texels + ABBE_PART_TEXELS * r * apart + p / 4][p % 4] =
+          (float)surface_of(s, r, &band[r % refractors * apart], depth);
     }
   }
+  abbe_band_parts_fit(&s->steps, &whole, xyz);
+  for (unsigned p = 0; p < ABBE_BAND_PARTS; p++)
+    for (unsigned c = 0; c < 3; c++) light[2 * c + p / 4][p % 4] = (float)xyz[p][c];
 }
 
 /* Where a set's bands are written: of the first surface, and from one to the next. */

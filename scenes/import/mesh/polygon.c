@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NONE = UINT32_MAX };
+#define NONE UINT32_MAX
 
 /* What it takes to try a corner, and to try an edge near it, in looks. */
 #define TRY_CORNER 32
