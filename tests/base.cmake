@@ -1,6 +1,6 @@
 foreach(name error foreign_text
         number report text_cursor
-        text_diff text yaml yaml_edit)
+        text yaml yaml_edit)
   abbe_test(${name} cpu abbe_base)
 endforeach()
 abbe_test(file cpu WRAPPED abbe_base)

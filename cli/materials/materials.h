@@ -112,7 +112,7 @@ enum { ABBE_CHANGE_KEY_DRY_RUN = ABBE_MATERIALS_KEY_OWN, ABBE_CHANGE_KEY_OWN };
   {"table", ABBE_MATERIALS_KEY_TABLE, "FILE", ABBE_ARGUMENT_READS, "the table file to change", 0}, \
   {                                                                                                \
     "dry-run", ABBE_CHANGE_KEY_DRY_RUN, NULL, 0,                                                   \
-        "show the change as a unified diff, and write nothing", 0                                  \
+        "say what the change does to the numbers, and write nothing", 0                            \
   }
 
 typedef struct abbe_change {
@@ -132,8 +132,8 @@ abbe_result abbe_change_open(abbe_change *change, abbe_error *error);
 abbe_result abbe_change_assign(abbe_table_edit *edit, const char *name, const char *assignment,
                                abbe_error *error);
 /* Saves, and prints what (a sentence) and the numbers n_d and V_d of record `name` (or NULL) before
- * and after; or prints the diff. Says it on stderr where the file is still no table for an older
- * reason. Frees the edit. */
+ * and after. Says it on stderr where the file is still no table for an older reason. Frees the
+ * edit. */
 int abbe_change_end(abbe_change *change, abbe_result result, const char *what, const char *name,
                     abbe_error *error);
 

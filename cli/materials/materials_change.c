@@ -104,14 +104,6 @@ static void say(const abbe_change *change, const char *what, const char *name,
   printf("  n_d %s -> %s, V_d %s -> %s\n", old_n_d, n_d, old_v_d, v_d);
 }
 
-static abbe_result show(const abbe_change *change, abbe_error *error) {
-  char *diff = NULL;
-  abbe_result result = abbe_table_edit_diff(change->edit, &diff, error);
-  if (result == ABBE_OK) fputs(diff, stdout);
-  free(diff);
-  return result;
-}
-
 int abbe_change_end(abbe_change *change, abbe_result result, const char *what, const char *name,
                     abbe_error *error) {
   abbe_dispersion_numbers before;
@@ -125,9 +117,9 @@ int abbe_change_end(abbe_change *change, abbe_result result, const char *what, c
     known = name != NULL && numbers_of(old, size, name, &before);
     result = abbe_table_edit_allow(change->edit, error);
   }
-  if (result == ABBE_OK)
-    result = change->dry_run ? show(change, error) : abbe_table_edit_save(change->edit, error);
-  if (result == ABBE_OK && !change->dry_run) say(change, what, name, known ? &before : NULL);
+  if (result == ABBE_OK && !change->dry_run) result = abbe_table_edit_save(change->edit, error);
+  if (result == ABBE_OK) say(change, what, name, known ? &before : NULL);
+  if (result == ABBE_OK && change->dry_run) puts("  nothing is written");
   abbe_error left = {0};
   if (result == ABBE_OK && abbe_table_edit_check(change->edit, &left) != ABBE_OK)
     fprintf(stderr, "%s: the file is not yet a table that can be used: %s\n", change->program,

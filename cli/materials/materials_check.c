@@ -175,16 +175,10 @@ static abbe_result examine(const request *r, const abbe_material_table *known, a
 static abbe_result fix(const request *r, const abbe_material_table *known, abbe_error *error) {
   abbe_table_edit *edit = NULL;
   abbe_table_fix made = {0};
-  char *diff = NULL;
   abbe_result result = abbe_change_check_table(r->table, error);
   if (result == ABBE_OK) result = abbe_table_edit_open(r->table, &edit, error);
   if (result == ABBE_OK) result = abbe_table_fix_make(edit, known, &made, error);
-  if (result == ABBE_OK && r->dry_run) {
-    result = abbe_table_edit_diff(edit, &diff, error);
-    if (result == ABBE_OK) fputs(diff, stdout);
-  } else if (result == ABBE_OK) {
-    result = abbe_table_edit_save(edit, error);
-  }
+  if (result == ABBE_OK && !r->dry_run) result = abbe_table_edit_save(edit, error);
   if (result == ABBE_OK)
     fprintf(stderr, "%s: %zu value%s %s\n", r->program, made.fixed, made.fixed == 1 ? "" : "s",
             r->dry_run ? "would be fixed" : "fixed");
@@ -193,7 +187,6 @@ static abbe_result fix(const request *r, const abbe_material_table *known, abbe_
             r->program, made.warned);
   if (result == ABBE_OK && made.refused > 0)
     fprintf(stderr, "%s: %zu could not be: %s\n", r->program, made.refused, made.why);
-  free(diff);
   abbe_table_edit_free(edit);
   return result;
 }
@@ -208,7 +201,8 @@ static const struct argp_option options[] = {
      "a table of materials that are known, to compare with; without it, default", 0},
     {"fix", KEY_FIX, NULL, 0,
      "put the fixes that are certain into the file, and check what is left", 0},
-    {"dry-run", KEY_DRY_RUN, NULL, 0, "with --fix: show the change as a diff, write nothing", 0},
+    {"dry-run", KEY_DRY_RUN, NULL, 0, "with --fix: count what would be fixed, and write nothing",
+     0},
     {"all", KEY_ALL, NULL, 0, "show every note, not one line for many of a kind", 0},
     ABBE_MATERIALS_JSON_OPTION,
     {0}};

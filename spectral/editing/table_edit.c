@@ -2,7 +2,6 @@
 
 #include "base/file.h"
 #include "base/number.h"
-#include "base/text_diff.h"
 #include "base/yaml/yaml_edit_text.h"
 #include "spectral/editing/check.h"
 #include "spectral/formats/material_import.h"
@@ -205,11 +204,6 @@ abbe_result abbe_table_edit_check(const abbe_table_edit *edit, abbe_error *error
       abbe_material_table_parse(edit->yaml.text, edit->yaml.size, edit->yaml.name, &table, error);
   abbe_material_table_free(&table);
   return result;
-}
-
-abbe_result abbe_table_edit_diff(const abbe_table_edit *edit, char **out, abbe_error *error) {
-  return abbe_text_diff(edit->before, edit->before_size, edit->yaml.text, edit->yaml.size,
-                        edit->yaml.name, out, error);
 }
 
 static abbe_result check_unchanged(const abbe_table_edit *edit, abbe_error *error) {

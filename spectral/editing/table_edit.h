@@ -65,8 +65,6 @@ abbe_result abbe_table_edit_check(const abbe_table_edit *edit, abbe_error *error
 /* What abbe_table_edit_save would return, but for the disk: ABBE_SCHEMA where the text was a table
  * and would be none after the changes. */
 abbe_result abbe_table_edit_allow(const abbe_table_edit *edit, abbe_error *error);
-/* The changes so far as a unified diff, malloc'd; "" where there are none. */
-abbe_result abbe_table_edit_diff(const abbe_table_edit *edit, char **out, abbe_error *error);
 /* Writes the file. ABBE_SCHEMA as above; ABBE_IO where the file is not as it was read. Without
  * changes nothing is written. */
 abbe_result abbe_table_edit_save(abbe_table_edit *edit, abbe_error *error);

@@ -66,8 +66,9 @@ TEST(a_folder_becomes_a_store) {
   assert_int_equal(run_line(M "check" T), 3);
   assert_contains(run_output, "all.sqlite: 14 rows, 2 wrong, 2 doubtful");
   runs(M "import all.sqlite -o again.sqlite && cmp all.sqlite again.sqlite && rm again.sqlite", "");
-  runs(M "export -o all.yaml" T " && " M "import all.yaml -o again.sqlite && " M
-         "export --table again.sqlite -o again.yaml && cmp all.yaml again.yaml && rm a*n.* all.yaml",
+  runs(M
+       "export -o all.yaml" T " && " M "import all.yaml -o again.sqlite && " M
+       "export --table again.sqlite -o again.yaml && cmp all.yaml again.yaml && rm a*n.* all.yaml",
        "14 materials in again.sqlite");
   runs(M "export one-ann --to yaml" T, "");
   assert_contains(run_output, "name: one-Ann\n");

@@ -195,7 +195,8 @@ TEST(fix_changes_a_copy_and_leaves_the_rest) {
   answers("cp $house/spectral/materials/thesis.yaml t.yaml\n"
           "$abbe materials check --table t.yaml --fix --dry-run && cmp t.yaml "
           "$house/spectral/materials/thesis.yaml",
-          0, "+    coefficients: [1.447746, 0.00354]\n");
+          0, "");
+  assert_contains(run_errors, "4 values would be fixed");
   answers("$abbe materials check --table t.yaml --fix", 0, "5 rows, 0 wrong, 0 doubtful");
   assert_contains(run_errors,
                   "fused-silica, k5, bak4, baf10: the row's own warning stays as it was");

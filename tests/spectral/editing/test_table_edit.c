@@ -42,9 +42,17 @@ static const char *text_of(const abbe_table_edit *edit) {
 
 /* The diff of the edit, without its head. */
 static void check_diff(abbe_table_edit *edit, const char *wanted) {
-  FREED char *diff = NULL;
+  char diff[4096] = "";
+  size_t size = 0;
+  const char *before = abbe_table_edit_original(edit, &size);
   OK(abbe_table_edit_check(edit, &error));
-  OK(abbe_table_edit_diff(edit, &diff, &error));
+  OK(abbe_file_write("before.yaml", before, size, &error));
+  OK(abbe_file_write("after.yaml", text_of(edit), strlen(text_of(edit)), &error));
+  FILE *shown = popen("diff -u before.yaml after.yaml", "r");
+  assert_non_null(shown);
+  diff[fread(diff, 1, sizeof diff - 1, shown)] = '\0';
+  pclose(shown);
+  remove("before.yaml"), remove("after.yaml");
   if (strstr(diff, wanted) == NULL) fail_msg("%s\nis not\n%s", diff, wanted);
   abbe_table_edit_free(edit);
 }
