@@ -1,6 +1,5 @@
 #include "cli/base/command.h"
 #include "cli/base/output.h"
-#include "cli/pages/pages.h"
 #include "cli/python_command.h"
 
 #include "base/text.h"
@@ -20,7 +19,7 @@
 
 const char *argp_program_version = "abbe " ABBE_VERSION;
 
-static const abbe_pages_command commands[] = {
+static const abbe_verb commands[] = {
 #define ABBE_COMMAND_ROW(name, summary) {#name, summary, abbe_command_##name},
     ABBE_COMMANDS(ABBE_COMMAND_ROW)
 #undef ABBE_COMMAND_ROW
@@ -69,14 +68,6 @@ static void say(const char *message) {
   fputs(message, stderr);
 }
 
-/* For the build alone, which installs them. */
-static int write_pages(const char *folder) {
-  abbe_error error = {0};
-  const abbe_result result =
-      abbe_pages_write(folder, ABBE_VERSION, commands, COMMAND_COUNT, &error);
-  return abbe_command_end("abbe", result, &error);
-}
-
 int main(int argc, char **argv) {
   hold_streams();
   abbe_output_begin();
@@ -92,7 +83,6 @@ int main(int argc, char **argv) {
     return ABBE_EXIT_USAGE;
   }
   const char *word = argv[1];
-  if (strcmp(word, "--write-pages") == 0 && argc == 3) return write_pages(argv[2]);
   if (strcmp(word, "--version") == 0) return printf("%s\n", argp_program_version) < 0;
   bool wants_help = strcmp(word, "help") == 0 || strcmp(word, "--help") == 0 ||
                     strcmp(word, "-h") == 0 || strcmp(word, "-?") == 0;

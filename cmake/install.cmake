@@ -58,11 +58,12 @@ install(DIRECTORY scenes/designs scenes/environments scenes/looks scenes/meshes 
 install(FILES spectral/materials/materials.yaml spectral/materials/thesis.yaml DESTINATION ${share}/materials)
 install(FILES colorimetry/image/config.ocio DESTINATION ${share}/ocio)
 
-# Made from the program's own option tables.
+# Made from what the program's help says.
 set(pages ${CMAKE_CURRENT_BINARY_DIR}/pages)
 file(MAKE_DIRECTORY ${pages})
 add_custom_command(OUTPUT ${pages}/abbe.1 ${pages}/abbe.bash ${pages}/_abbe
-  COMMAND abbe --write-pages ${pages} DEPENDS abbe VERBATIM)
+  COMMAND ${ABBE_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/cli/pages.py $<TARGET_FILE:abbe> ${pages}
+  DEPENDS abbe cli/pages.py VERBATIM)
 add_custom_target(abbe_pages ALL DEPENDS ${pages}/abbe.1)
 install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN *.1)
 install(FILES ${pages}/abbe.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions

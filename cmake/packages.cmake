@@ -43,3 +43,5 @@ find_package(glm REQUIRED)
 if(ABBE_TESTS)
   pkg_check_modules(CMOCKA REQUIRED IMPORTED_TARGET cmocka)
 endif()
+# Debian's own, which makes the manual pages, and whose numpy is Debian's.
+find_program(ABBE_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)

@@ -12,18 +12,14 @@ add_test(NAME pages COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/install/pages ${CMAKE_CO
 add_test(NAME package COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/install/package ${PROJECT_BINARY_DIR}
          ${CMAKE_CPACK_COMMAND})
 abbe_label(program NAMES pages package)
-# Debian's own, whose numpy is Debian's.
-find_program(ABBE_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
-if(ABBE_PYTHON)
-  execute_process(COMMAND ${ABBE_PYTHON} -c "import numpy" RESULT_VARIABLE no_numpy ERROR_QUIET)
-  if(no_numpy EQUAL 0)
-    add_test(NAME python COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/python/check ${CMAKE_COMMAND}
-             ${PROJECT_BINARY_DIR} ${ABBE_PYTHON} ${PROJECT_SOURCE_DIR})
-    add_test(NAME design_page
-      COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
-        docs/design.md)
-    abbe_label(program NAMES python design_page)
-  endif()
+execute_process(COMMAND ${ABBE_PYTHON} -c "import numpy" RESULT_VARIABLE no_numpy ERROR_QUIET)
+if(no_numpy EQUAL 0)
+  add_test(NAME python COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/python/check ${CMAKE_COMMAND}
+           ${PROJECT_BINARY_DIR} ${ABBE_PYTHON} ${PROJECT_SOURCE_DIR})
+  add_test(NAME design_page
+    COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
+      docs/design.md)
+  abbe_label(program NAMES python design_page)
 endif()
 add_test(NAME scripts COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/check)
 add_test(NAME measuring_scripts

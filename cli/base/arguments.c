@@ -6,56 +6,10 @@
 #include "spectral/materials/material_table.h"
 
 #include <libgen.h>
-#include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-/* Who visits, innermost; NULL: nobody. */
-typedef struct visit {
-  jmp_buf back;
-  const char *program, *summary;
-  abbe_option_table_take take;
-  void *user;
-} visit;
-
-static visit *here;
-
-void abbe_option_tables_visit(const char *program, const char *summary,
-                              int (*run)(int argc, char **argv), abbe_option_table_take take,
-                              void *user) {
-  visit own = {.program = program, .summary = summary, .take = take, .user = user};
-  visit *const outer = here;
-  char name[64];
-  snprintf(name, sizeof name, "%s", program);
-  char *argv[] = {name, NULL};
-  here = &own;
-  if (setjmp(own.back) == 0) run(1, argv);
-  here = outer;
-}
-
-static void option_tables_offer(const struct argp *argp, unsigned flags) {
-  visit *const v = here;
-  if (v == NULL) return;
-  const abbe_option_table table = {
-      .program = v->program, .summary = v->summary, .argp = argp, .flags = flags};
-  v->take(v->user, &table);
-  longjmp(v->back, 1);
-}
-
-void abbe_option_tables_offer_verbs(const abbe_verbs *verbs) {
-  visit *const v = here;
-  if (v == NULL) return;
-  const abbe_option_table table = {.program = v->program, .summary = v->summary, .verbs = verbs};
-  v->take(v->user, &table);
-  for (size_t i = 0; i < verbs->count; i++) {
-    char program[64];
-    snprintf(program, sizeof program, "%s %s", v->program, verbs->verb[i].name);
-    abbe_option_tables_visit(program, verbs->verb[i].summary, verbs->verb[i].run, v->take, v->user);
-  }
-  longjmp(v->back, 1);
-}
 
 static _Noreturn void no_memory(const char *program) {
   fprintf(stderr, "%s: no memory to read the arguments\n", program);
@@ -279,7 +233,6 @@ void abbe_arguments_parse(const struct argp *argp, unsigned flags, int argc, cha
   static const struct argp always = {.options = own};
   option_list list = {.count = 0};
   bool only_arguments = false;
-  option_tables_offer(argp, flags);
   collect(argp, &list);
   collect(&always, &list);
   abbe_arguments_add(argv[0], ABBE_ARGUMENT_READS, "$OCIO", getenv("OCIO"));

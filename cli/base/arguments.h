@@ -118,32 +118,4 @@ enum {
  * value that is wrong ends the program with ABBE_EXIT_USAGE. */
 bool abbe_take_option(const abbe_take *takes, int key, char *text, struct argp_state *state);
 
-/* The options of every command and verb, for what is made of them: manual pages and the shells'
- * completion.
- *
- * A command hands its table to argp when it is run. It is run here with nobody's arguments, as far
- * as that and no further. */
-
-struct abbe_verbs;
-
-/* The table and the flags of the arguments of one command or verb (arguments.h); or, of a command
- * with verbs, those, which follow one by one. */
-typedef struct abbe_option_table {
-  const char *program, *summary; /* "abbe gem report" */
-  const struct argp *argp;
-  unsigned flags;
-  const struct abbe_verbs *verbs;
-} abbe_option_table;
-
-/* What it points to holds until the call returns. */
-typedef void (*abbe_option_table_take)(void *user, const abbe_option_table *table);
-
-/* Calls `take` with the table of a command and those of its verbs. */
-void abbe_option_tables_visit(const char *program, const char *summary,
-                              int (*run)(int argc, char **argv), abbe_option_table_take take,
-                              void *user);
-
-/* For abbe_verbs_run: does not return where somebody visits. */
-void abbe_option_tables_offer_verbs(const struct abbe_verbs *verbs);
-
 #endif

@@ -33,7 +33,6 @@ static int run(const abbe_verb *verb, bool for_help, int argc, char **argv) {
 
 int abbe_verbs_run(const abbe_verbs *v, int argc, char **argv) {
   const char *program = argv[0], *names[MOST];
-  abbe_option_tables_offer_verbs(v);
   if (argc < 2) {
     fprintf(stderr, "%s: a verb is wanted\n", program);
     help(v, stderr, program);
