@@ -388,25 +388,19 @@ static abbe_result read_size_and_place(const abbe_object_reading *r, abbe_object
 
 /* What changes a mesh into a solid says nothing of shapes, which are solids, or of what receives
  * light, which need not be one. */
-static abbe_result refuse_elsewhere(const abbe_object_reading *r, const char *key,
-                                    abbe_error *error) {
-  const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, key);
-  const bool refracts = abbe_yaml_get(r->yaml, r->node, "material").id != 0;
-  if (!node.id || (r->form == ABBE_OBJECT_MESH && refracts)) return ABBE_OK;
-  return abbe_yaml_fail(r->yaml, node, error, "'%s' is for the mesh of a file that refracts", key);
-}
-
 static abbe_result read_solid(const abbe_object_reading *r, abbe_object_surface *s,
                               abbe_error *error) {
-  ABBE_TRY(refuse_elsewhere(r, "repair", error));
-  ABBE_TRY(refuse_elsewhere(r, "flatten", error));
-  ABBE_TRY(abbe_yaml_get_bool(r->yaml, r->node, "repair", &s->repair, error));
+  const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, "flatten");
+  const bool refracts = abbe_yaml_get(r->yaml, r->node, "material").id != 0;
+  if (node.id && !(r->form == ABBE_OBJECT_MESH && refracts))
+    return abbe_yaml_fail(r->yaml, node, error,
+                          "'flatten' is for the mesh of a file that refracts");
   ABBE_TRY(abbe_yaml_get_number(r->yaml, r->node, "flatten", 0, ABBE_CONVEX_MOST_FLATTENED,
                                 &s->flatten, error));
   if (s->flatten > 0 && r->normals == ABBE_NORMALS_SMOOTH)
-    ABBE_TRY(abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, r->node, "flatten"), error,
-                            "'flatten' makes a cut solid; leave out 'smooth: true' and "
-                            "'subdivide'"));
+    return abbe_yaml_fail(r->yaml, node, error,
+                          "'flatten' makes a cut solid; leave out 'smooth: true' and "
+                          "'subdivide'");
   return ABBE_OK;
 }
 

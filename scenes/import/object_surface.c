@@ -149,8 +149,7 @@ static abbe_result straighten(abbe_object *out, double (*plane)[4], uint32_t **p
     result = abbe_convex_flatten(&out->mesh, times * found.tolerance, ABBE_SCENE_MAX_PLANES, &moved,
                                  error);
   if (result == ABBE_GEOMETRY) return ABBE_OK;
-  if (result == ABBE_OK)
-    result = abbe_mesh_fix(&out->mesh, ABBE_NORMALS_FLAT, false, NULL, NULL, error);
+  if (result == ABBE_OK) result = abbe_mesh_fix(&out->mesh, ABBE_NORMALS_FLAT, NULL, NULL, error);
   if (result != ABBE_OK) return result;
   uint32_t *room = realloc(*plane_of, (out->mesh.face_count + 1) * sizeof *room);
   if (room == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for face planes");
@@ -273,7 +272,7 @@ static abbe_result solidify(const abbe_object_surface *s, abbe_object *out, size
                             size_t *count, abbe_error *error) {
   abbe_mesh *part = NULL;
   size_t parts = 1;
-  abbe_result result = abbe_mesh_fix(&out->mesh, s->normals, s->repair, &parts, &out->fixes, error);
+  abbe_result result = abbe_mesh_fix(&out->mesh, s->normals, &parts, &out->fixes, error);
   if (result == ABBE_OK && parts > 1) result = abbe_mesh_split(&out->mesh, &part, &parts, error);
   if (result != ABBE_OK || parts < 2) return result;
   if (parts > room)
@@ -301,8 +300,7 @@ static abbe_result flatten(const abbe_object_surface *s, abbe_object *out, abbe_
   char text[128];
   abbe_result result =
       abbe_convex_flatten(&out->mesh, s->flatten, ABBE_SCENE_MAX_PLANES, &moved, error);
-  if (result == ABBE_OK)
-    result = abbe_mesh_fix(&out->mesh, ABBE_NORMALS_FLAT, false, NULL, NULL, error);
+  if (result == ABBE_OK) result = abbe_mesh_fix(&out->mesh, ABBE_NORMALS_FLAT, NULL, NULL, error);
   if (result != ABBE_OK) return result;
   abbe_number_format(
       text, sizeof text,

@@ -151,7 +151,6 @@ typedef struct abbe_object_surface {
   bool rectangles;   /* its mesh is made of them, four vertices each */
   bool file;         /* its mesh is a file's */
   abbe_mesh_normals normals;
-  bool repair;
   double flatten; /* share of its size by which it is made a convex solid of planes, or 0 */
   double fit;     /* the longest side of its bounds, m, or 0: as it is */
   double width;   /* the smaller of their sides along x and y, m, or 0 */

@@ -81,16 +81,14 @@ void abbe_mesh_report_faults(const abbe_mesh_report *report, char *text, size_t 
 
 /* Fixes what is safe: joins corners that lie up to 3e-4 of its size apart, if that closes it, drops
  * degenerate faces and faces that are there twice, makes orientation
- * consistent, turns an inside-out mesh, closes flat or small holes. repair: closes holes of any
- * shape by the smallest surface, and drops what parts a body from itself: walls of faces back to
- * back (or one of them, where nothing is around). *what (may
+ * consistent, turns an inside-out mesh, closes flat or small holes. *what (may
  * be NULL) gets a malloc'd sentence that says what was done, and where the surface still crosses
  * itself, or NULL where there is nothing to say. A fixed mesh has no uv; given normals stay where
  * faces do. Leaves the mesh closed and outwards or fails with ABBE_GEOMETRY, the mesh unchanged,
  * and a sentence that counts what is wrong and says where.
  * *solids (may be NULL): of how many parts abbe_mesh_split makes it. */
-abbe_result abbe_mesh_fix(abbe_mesh *mesh, abbe_mesh_normals normals, bool repair, size_t *solids,
-                          char **what, abbe_error *error);
+abbe_result abbe_mesh_fix(abbe_mesh *mesh, abbe_mesh_normals normals, size_t *solids, char **what,
+                          abbe_error *error);
 
 #define ABBE_MESH_MAX_SOLIDS 32u
 

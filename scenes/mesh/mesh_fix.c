@@ -12,7 +12,7 @@
 #include <string.h>
 
 typedef struct fixing {
-  size_t joined, repeated, doubles, walls, slivers, turned, holes, inverted, crossings, solids;
+  size_t joined, repeated, doubles, slivers, turned, holes, inverted, crossings, solids;
   double volume;      /* that is enclosed */
   double widest;      /* hole, in the mesh's own unit */
   double apart;       /* a joined corner, at the most, from the middle, likewise */
@@ -180,41 +180,32 @@ static abbe_result turn_outwards(abbe_mesh *mesh, const abbe_topology *t, fixing
   return ABBE_OK;
 }
 
-static abbe_result run_steps(abbe_mesh *mesh, bool repair, fixing *done, abbe_error *error) {
+static abbe_result run_steps(abbe_mesh *mesh, fixing *done, abbe_error *error) {
   drop_repeated(mesh, done);
   if (mesh->face_count == 0)
     return abbe_error_set(error, ABBE_GEOMETRY, "the mesh has no face with an area");
-  abbe_result result = abbe_mesh_drop_doubles(mesh, repair, &done->doubles, &done->walls, error);
-  if (result == ABBE_OK && mesh->face_count == 0)
-    return abbe_error_set(error, ABBE_GEOMETRY,
-                          "the mesh is nothing but pairs of faces back to back, with no volume");
+  abbe_result result = abbe_mesh_drop_doubles(mesh, &done->doubles, error);
   if (result == ABBE_OK) result = make_consistent(mesh, done, error);
   if (result == ABBE_OK) result = flip_slivers(mesh, done, error);
-  if (result == ABBE_OK)
-    result = abbe_mesh_close_holes(mesh, repair, &done->holes, &done->widest, error);
-  /* a slit that is closed by faces without area is a point on another's edge */
-  if (result == ABBE_OK && repair) result = flip_slivers(mesh, done, error);
+  if (result == ABBE_OK) result = abbe_mesh_close_holes(mesh, &done->holes, &done->widest, error);
   return result;
 }
 
-static abbe_result refuse(const abbe_mesh_report *r, bool repair, abbe_error *error) {
+static abbe_result refuse(const abbe_mesh_report *r, abbe_error *error) {
   char faults[640];
   abbe_mesh_report_faults(r, faults, sizeof faults);
   return abbe_error_set(
-      error, ABBE_GEOMETRY, "the mesh is not a closed, consistently oriented surface%s: %s%s%s",
-      repair ? ", and could not be made one" : "", faults,
-      !repair && (r->open_edges || r->crowded_edges)
-          ? "; 'repair: true' closes holes and drops walls within"
-          : "",
+      error, ABBE_GEOMETRY, "the mesh is not a closed, consistently oriented surface: %s%s%s",
+      faults, r->open_edges ? "; fill its holes in a modeller, such as Blender or MeshLab" : "",
       r->crowded_edges ? "; sheets that hang on a body are taken off where the mesh was made" : "");
 }
 
 /* After the steps, or at once where none is needed. */
-static abbe_result finish(abbe_mesh *mesh, const abbe_topology *t, bool repair, fixing *done,
+static abbe_result finish(abbe_mesh *mesh, const abbe_topology *t, fixing *done,
                           abbe_error *error) {
   abbe_mesh_report r;
   abbe_result result = abbe_mesh_check_known(mesh, t, &r, error);
-  if (result == ABBE_OK && !is_sound(&r)) result = refuse(&r, repair, error);
+  if (result == ABBE_OK && !is_sound(&r)) result = refuse(&r, error);
   size_t turned = 0;
   if (result == ABBE_OK) result = turn_outwards(mesh, t, done, &turned, error);
   /* bodies that touch along edges are separated by place and by the side that they face */
@@ -240,7 +231,7 @@ static void say(char *text, size_t size, size_t count, const char *one, const ch
   snprintf(text + used, size - used, "%s%zu %s", used ? ", " : "", count, count == 1 ? one : many);
 }
 
-static abbe_result describe(const fixing *done, bool repair, char **what, abbe_error *error) {
+static abbe_result describe(const fixing *done, char **what, abbe_error *error) {
   char text[640] = "", one[80], many[80], corners[96];
   abbe_number_format(corners, sizeof corners,
                      "corners joined that lay up to %.3g from their middle, in the mesh's own unit",
@@ -254,9 +245,6 @@ static abbe_result describe(const fixing *done, bool repair, char **what, abbe_e
       "faces with repeated corners dropped");
   say(text, sizeof text, done->doubles, "face that was there twice dropped",
       "faces that were there twice dropped");
-  if (repair)
-    say(text, sizeof text, done->walls, "pair of faces back to back dropped or made one",
-        "pairs of faces back to back dropped or made one");
   say(text, sizeof text, done->slivers, "face without area split away",
       "faces without area split away");
   say(text, sizeof text, done->turned, "face turned to agree with its neighbours",
@@ -345,13 +333,12 @@ static abbe_result fixed_normals(const abbe_mesh *from, const abbe_topology *t, 
 }
 
 /* The steps over a mesh of one vertex a point, which it leaves in *work. */
-static abbe_result fix(const abbe_topology *t, bool repair, fixing *done, abbe_mesh *work,
-                       abbe_error *error) {
+static abbe_result fix(const abbe_topology *t, fixing *done, abbe_mesh *work, abbe_error *error) {
   abbe_topology own = {0};
   abbe_result result = welded(t, work, error);
-  if (result == ABBE_OK) result = run_steps(work, repair, done, error);
+  if (result == ABBE_OK) result = run_steps(work, done, error);
   if (result == ABBE_OK) result = abbe_topology_make(work, &own, error);
-  if (result == ABBE_OK) result = finish(work, &own, repair, done, error);
+  if (result == ABBE_OK) result = finish(work, &own, done, error);
   abbe_topology_free(&own);
   return result;
 }
@@ -368,8 +355,8 @@ static abbe_result join(const abbe_mesh *mesh, abbe_mesh *joined, abbe_topology 
   return ABBE_OK;
 }
 
-abbe_result abbe_mesh_fix(abbe_mesh *mesh, abbe_mesh_normals normals, bool repair, size_t *solids,
-                          char **what, abbe_error *error) {
+abbe_result abbe_mesh_fix(abbe_mesh *mesh, abbe_mesh_normals normals, size_t *solids, char **what,
+                          abbe_error *error) {
   if (what) *what = NULL;
   abbe_topology t;
   abbe_mesh_report report;
@@ -386,19 +373,19 @@ abbe_result abbe_mesh_fix(abbe_mesh *mesh, abbe_mesh_normals normals, bool repai
   /* what is sound, and nowhere there twice, has faces turned at the most */
   if (result == ABBE_OK && is_sound(&report) && report.touching_edges == 0) {
     result = welded(&t, &work, error);
-    if (result == ABBE_OK) result = finish(&work, &t, repair, &done, error);
+    if (result == ABBE_OK) result = finish(&work, &t, &done, error);
   } else if (result == ABBE_OK) {
-    result = fix(&t, repair, &done, &work, error);
+    result = fix(&t, &done, &work, error);
   }
-  const bool changed = done.joined + done.repeated + done.doubles + done.walls + done.slivers +
-                           done.turned + done.holes + done.inverted >
+  const bool changed = done.joined + done.repeated + done.doubles + done.slivers + done.turned +
+                           done.holes + done.inverted >
                        0;
   if (result == ABBE_OK && changed && normals != ABBE_NORMALS_AUTO)
     result = abbe_mesh_drop_unused(&work, error);
   if (result == ABBE_OK && changed)
     result = normals == ABBE_NORMALS_AUTO ? fixed_normals(from, &t, &work, error)
                                           : abbe_mesh_compute_normals(&work, normals, error);
-  if (result == ABBE_OK) result = describe(&done, repair, what, error);
+  if (result == ABBE_OK) result = describe(&done, what, error);
   abbe_topology_free(&t);
   abbe_mesh_free(&joined);
   if (result == ABBE_OK && solids) *solids = done.solids;

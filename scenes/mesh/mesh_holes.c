@@ -1,4 +1,4 @@
-/* Holes: their rims, and surfaces that close them. */
+/* Holes: their rims, and fans that close them. */
 #include "base/maths.h"
 #include "scenes/mesh/mesh_parts.h"
 
@@ -7,14 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Without being asked to, holes that bend are closed only where their rim is shorter than this
- * share of the bounds' diagonal, flat ones of any size where every point is this near the plane of
- * the rim. */
+/* Holes that bend are closed only where their rim is shorter than this share of the bounds'
+ * diagonal, flat ones of any size where every point is this near the plane of the rim. */
 #define SMALL_HOLE 0.15
 #define FLAT_HOLE 0.01
-
-/* Points of a rim that is closed by its smallest surface: the search takes the cube of them. */
-enum { MOST_POINTS = 600 };
 
 /* ---- rims ---- */
 
@@ -200,177 +196,37 @@ static abbe_result close_by_fan(abbe_mesh *mesh, const uint32_t *rim, size_t n,
   return ABBE_OK;
 }
 
-/* ---- the smallest surface ---- */
-
-/* Between points i and k of a rim, at i n + k and at k n + i: the least weight of triangles over
- * that part, and the third corner of the one at the chord. [BarequetSharir1995] */
-typedef struct chord {
-  float weight;
-  uint16_t third;
-  bool taken; /* an edge that the mesh has elsewhere */
-} chord;
-
-/* Area, and so much of the squared sides that thin triangles are not as good as others. */
-static double weight_of(const abbe_mesh *mesh, uint32_t a, uint32_t b, uint32_t c) {
-  const double *p = mesh->position[a], *q = mesh->position[b], *r = mesh->position[c];
-  double u[3], v[3], w[3], n[3];
-  abbe_vector_subtract(q, p, u);
-  abbe_vector_subtract(r, p, v);
-  abbe_vector_subtract(r, q, w);
-  abbe_vector_cross(u, v, n);
-  const double uu = abbe_vector_dot(u, u), vv = abbe_vector_dot(v, v), ww = abbe_vector_dot(w, w);
-  const double sides = uu + vv + ww, twice = abbe_vector_length(n);
-  const double longest = uu > vv ? (uu > ww ? uu : ww) : (vv > ww ? vv : ww);
-  /* as abbe_mesh_is_sliver says; where nothing else is left */
-  if (!(twice > 1e-9 * longest)) return 1e3 * sides;
-  return 0.5 * twice + 1e-3 * sides;
-}
-
-static void weigh_chords(const abbe_mesh *mesh, const uint32_t *rim, size_t n, chord *at) {
-  for (size_t span = 2; span < n; span++)
-    for (size_t i = 0; i + span < n; i++) {
-      const size_t last = i + span;
-      const chord *from = &at[i * n], *to = &at[last * n]; /* both along memory */
-      chord c = {.weight = INFINITY, .taken = from[last].taken};
-      for (size_t k = i + 1; k < last && !c.taken; k++) {
-        const float parts = from[k].weight + to[k].weight;
-        if (!(parts < c.weight)) continue;
-        const float all = parts + (float)weight_of(mesh, rim[i], rim[k], rim[last]);
-        if (!(all < c.weight)) continue;
-        c.weight = all;
-        c.third = (uint16_t)k;
-      }
-      at[i * n + last] = at[last * n + i] = c;
-    }
-}
-
-/* Edges that the mesh has, from the lesser vertex to the greater, in order. */
-typedef struct edges {
-  size_t count;
-  step *edge;
-} edges;
-
-static step edge_between(uint32_t a, uint32_t b) {
-  return a < b ? (step){a, b} : (step){b, a};
-}
-
-/* Flags chords that are edges of the mesh already: a third face would hang on them. */
-static void mark_taken(const edges *known, const uint32_t *rim, size_t n, chord *at) {
-  for (size_t i = 0; i < n; i++)
-    for (size_t k = i + 2; k < n && k - i < n - 1; k++) {
-      const step wanted = edge_between(rim[i], rim[k]);
-      at[i * n + k].taken =
-          bsearch(&wanted, known->edge, known->count, sizeof wanted, by_start) != NULL;
-    }
-}
-
-static void lay(abbe_mesh *mesh, const uint32_t *rim, size_t n, const chord *at, size_t i,
-                size_t k) {
-  while (k - i >= 2) {
-    const size_t third = at[i * n + k].third;
-    const uint32_t f[3] = {rim[i], rim[third], rim[k]};
-    memcpy(mesh->face[mesh->face_count++], f, sizeof f);
-    lay(mesh, rim, n, at, i, third);
-    i = third;
-  }
-}
-
-/* Where there is none, of triangles with an area and new edges, *closed stays false. */
-static abbe_result close_by_least(abbe_mesh *mesh, const edges *known, const uint32_t *rim,
-                                  size_t n, bool *closed, abbe_error *error) {
-  chord *at = calloc(n * n, sizeof *at);
-  if (!at) return no_room(error);
-  mark_taken(known, rim, n, at);
-  weigh_chords(mesh, rim, n, at);
-  *closed = isfinite(at[n - 1].weight);
-  const bool room = !*closed || grow(mesh, mesh->vertex_count, mesh->face_count + n - 2);
-  if (*closed && room) lay(mesh, rim, n, at, 0, n - 1);
-  free(at);
-  return room ? ABBE_OK : no_room(error);
-}
-
 /* ---- all of them ---- */
 
-/* Cubes of rims' points, as the search takes them: twenty of the longest rims, some seconds. */
-#define MOST_WORK (20.0 * MOST_POINTS * MOST_POINTS * MOST_POINTS)
-
-typedef struct closing {
-  bool any;
-  double diagonal;
-  edges known;
-} closing;
-
-static abbe_result check_work(const abbe_mesh *mesh, const rims *r, const closing *how,
-                              abbe_error *error) {
-  double work = 0, centre[3];
-  size_t bent = 0, longest = 0;
-  for (size_t i = 0; how->any && i < r->count; i++) {
-    const size_t n = r->first[i + 1] - r->first[i];
-    if (n > MOST_POINTS || fan_is_safe(mesh, r->point + r->first[i], n, how->diagonal, centre))
-      continue;
-    bent++;
-    work += (double)n * (double)n * (double)n;
-    if (n > longest) longest = n;
-  }
-  if (work <= MOST_WORK) return ABBE_OK;
-  return abbe_error_set(error, ABBE_GEOMETRY,
-                        "the mesh has %zu holes that bend, of up to %zu edges: too much work for "
-                        "'repair: true', which closes each by its smallest surface; close the "
-                        "longest where the mesh was made",
-                        bent, longest);
-}
-
-static abbe_result close_rim(abbe_mesh *mesh, const uint32_t *rim, size_t n, const closing *how,
-                             bool *closed, abbe_error *error) {
-  double centre[3];
-  *closed = fan_is_safe(mesh, rim, n, how->diagonal, centre);
-  if (*closed) return close_by_fan(mesh, rim, n, centre, error);
-  return how->any && n <= MOST_POINTS ? close_by_least(mesh, &how->known, rim, n, closed, error)
-                                      : ABBE_OK;
-}
-
-/* Rims and edges are in points; the mesh has one vertex a point, in another order perhaps. */
+/* Rims are in points; the mesh has one vertex a point, in another order perhaps. */
 static abbe_result name_vertices(const abbe_mesh *mesh, const abbe_topology *t, rims *r,
-                                 edges *known, abbe_error *error) {
+                                 abbe_error *error) {
   uint32_t *vertex = malloc((t->point_count + 1) * sizeof *vertex);
-  known->edge = malloc((t->edge_count + 1) * sizeof *known->edge);
-  const bool room = vertex && known->edge;
-  if (room) {
-    for (size_t v = 0; v < mesh->vertex_count; v++) vertex[t->point[v]] = (uint32_t)v;
-    for (size_t i = 0; i < r->first[r->count]; i++) r->point[i] = vertex[r->point[i]];
-    for (known->count = 0; known->count < t->edge_count; known->count++) {
-      const abbe_edge *e = &t->edge[known->count];
-      known->edge[known->count] = edge_between(vertex[e->a], vertex[e->b]);
-    }
-    if (known->count > 0) qsort(known->edge, known->count, sizeof *known->edge, by_start);
-  }
+  if (!vertex) return no_room(error);
+  for (size_t v = 0; v < mesh->vertex_count; v++) vertex[t->point[v]] = (uint32_t)v;
+  for (size_t i = 0; i < r->first[r->count]; i++) r->point[i] = vertex[r->point[i]];
   free(vertex);
-  return room ? ABBE_OK : no_room(error);
+  return ABBE_OK;
 }
 
-abbe_result abbe_mesh_close_holes(abbe_mesh *mesh, bool any, size_t *count, double *widest,
+abbe_result abbe_mesh_close_holes(abbe_mesh *mesh, size_t *count, double *widest,
                                   abbe_error *error) {
   abbe_topology t;
   rims r = {0};
-  closing how = {.any = any};
+  double centre[3];
   ABBE_TRY(abbe_topology_make(mesh, &t, error));
   abbe_result result = find_rims(&t, &r, error);
-  if (result == ABBE_OK && r.count > 0) {
-    result = name_vertices(mesh, &t, &r, &how.known, error);
-    how.diagonal = abbe_mesh_diagonal(mesh, NULL);
-    if (result == ABBE_OK) result = check_work(mesh, &r, &how, error);
-  }
+  if (result == ABBE_OK && r.count > 0) result = name_vertices(mesh, &t, &r, error);
+  const double diagonal = r.count > 0 ? abbe_mesh_diagonal(mesh, NULL) : 0;
   for (size_t i = 0; result == ABBE_OK && i < r.count; i++) {
     const uint32_t *rim = r.point + r.first[i];
     const size_t n = r.first[i + 1] - r.first[i];
-    bool closed = false;
-    result = close_rim(mesh, rim, n, &how, &closed, error);
-    if (!closed) continue;
+    if (!fan_is_safe(mesh, rim, n, diagonal, centre)) continue;
+    result = close_by_fan(mesh, rim, n, centre, error);
     ++*count;
     *widest = fmax(*widest, across(mesh, rim, n));
   }
   rims_free(&r);
-  free(how.known.edge);
   abbe_topology_free(&t);
   return result;
 }

@@ -44,14 +44,13 @@ abbe_result abbe_mesh_join_corners(const abbe_mesh *mesh, const abbe_topology *t
 
 /* Steps of fixing, over a mesh of one vertex a point. */
 
-/* Drops faces that are there twice and counts them; in walls: that lie on one another back to back,
- * which stay unless they are to go. */
-abbe_result abbe_mesh_drop_doubles(abbe_mesh *mesh, bool walls_go, size_t *doubles, size_t *walls,
-                                   abbe_error *error);
+/* Drops faces that are there twice and counts them; those that lie on one another back to back
+ * stay. */
+abbe_result abbe_mesh_drop_doubles(abbe_mesh *mesh, size_t *doubles, abbe_error *error);
 
-/* Closes holes: by a fan where that is safe, else, if any, by the smallest surface. *widest: the
- * longest side of the widest one's bounds, in the mesh's own unit. */
-abbe_result abbe_mesh_close_holes(abbe_mesh *mesh, bool any, size_t *closed, double *widest,
+/* Closes holes by a fan where that is safe. *widest: the longest side of the widest one's bounds,
+ * in the mesh's own unit. */
+abbe_result abbe_mesh_close_holes(abbe_mesh *mesh, size_t *closed, double *widest,
                                   abbe_error *error);
 
 #endif

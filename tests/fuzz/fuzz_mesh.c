@@ -2,7 +2,7 @@
  *
  * Input: a byte of choices, a byte each for the numbers of vertices and faces, a byte that scales,
  * then positions and faces. Choices: 1 smooth, 2 positions as eight raw bytes a coordinate (else
- * one signed byte), 4 subdivide, 8 texture coordinates and repair; the upper half picks the
+ * one signed byte), 4 subdivide, 8 texture coordinates; the upper half picks the
  * transform.
  */
 #include "tests/fuzz/fuzz.h"
@@ -112,13 +112,13 @@ static void split(const abbe_mesh *mesh, size_t solids) {
   free(part);
 }
 
-static void fix(abbe_mesh *mesh, int smooth, bool repair, size_t levels) {
+static void fix(abbe_mesh *mesh, int smooth, size_t levels) {
   abbe_mesh before;
   abbe_error error = {0};
   char *what = NULL;
   copy_mesh(mesh, &before);
   size_t solids = 0;
-  if (abbe_mesh_fix(mesh, smooth ? ABBE_NORMALS_SMOOTH : ABBE_NORMALS_AUTO, repair, &solids, &what,
+  if (abbe_mesh_fix(mesh, smooth ? ABBE_NORMALS_SMOOTH : ABBE_NORMALS_AUTO, &solids, &what,
                     &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0' && what == NULL && same_mesh(mesh, &before));
     abbe_mesh_free(&before);
@@ -159,7 +159,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   abbe_error error = {0};
   if (abbe_mesh_check(&mesh, &report, &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0');
-    FUZZ_PROMISE(abbe_mesh_fix(&mesh, ABBE_NORMALS_AUTO, false, NULL, NULL, &error) != ABBE_OK);
+    FUZZ_PROMISE(abbe_mesh_fix(&mesh, ABBE_NORMALS_AUTO, NULL, NULL, &error) != ABBE_OK);
   } else {
     topology_holds(&mesh);
     double matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -168,7 +168,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
                  ABBE_OK);
     usable(&mesh);
     FUZZ_PROMISE((abbe_mesh_transform(&mesh, matrix, &error) == ABBE_OK) == (matrix[0] != 0));
-    fix(&mesh, choices & 1, (choices & 8) != 0, (choices & 4) != 0);
+    fix(&mesh, choices & 1, (choices & 4) != 0);
   }
   abbe_mesh_free(&mesh);
   return 0;

@@ -164,8 +164,7 @@ static abbe_result meshes(abbe_error *error) {
     abbe_convex found = {0};
     result = abbe_mesh_load(paths[i], i == 0 ? ABBE_NORMALS_AUTO : ABBE_NORMALS_FLAT, &mesh, NULL,
                             error);
-    if (result == ABBE_OK)
-      result = abbe_mesh_fix(&mesh, ABBE_NORMALS_AUTO, true, NULL, &what, error);
+    if (result == ABBE_OK) result = abbe_mesh_fix(&mesh, ABBE_NORMALS_AUTO, NULL, &what, error);
     if (result == ABBE_OK) result = abbe_mesh_compute_normals(&mesh, (abbe_mesh_normals)i, error);
     if (result == ABBE_OK) result = abbe_convex_find(&mesh, 16, plane, NULL, &found, error);
     if (result == ABBE_OK && found.verdict == ABBE_CONVEX_SOLID)
@@ -182,8 +181,8 @@ static abbe_result meshes(abbe_error *error) {
 
 /* A box with slivers, a hole and turned faces, so that all steps of fixing have work. */
 static abbe_result fix(abbe_error *error) {
-  static const char *const names[] = {"box_open",   "box_turned", "sliver", "two_shells",
-                                      "degenerate", "crossing",   "doubled"};
+  static const char *const names[] = {"box_open",   "box_turned", "sliver",  "two_shells",
+                                      "degenerate", "crossing",   "touching"};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof names / sizeof *names && result == ABBE_OK; i++) {
     static char path[512];
@@ -198,8 +197,7 @@ static abbe_result fix(abbe_error *error) {
       mesh.position[k / 3][k % 3] = (double)(signed char)data[4 + k];
     for (size_t k = 0; result == ABBE_OK && k < 3 * mesh.face_count; k++)
       mesh.face[k / 3][k % 3] = (uint32_t)(unsigned char)data[4 + 3 * mesh.vertex_count + k];
-    if (result == ABBE_OK)
-      result = abbe_mesh_fix(&mesh, ABBE_NORMALS_AUTO, true, NULL, &what, error);
+    if (result == ABBE_OK) result = abbe_mesh_fix(&mesh, ABBE_NORMALS_AUTO, NULL, &what, error);
     if (result == ABBE_OK) digest_mesh(&mesh);
     FREED abbe_mesh *part = NULL;
     size_t parts = 0;

@@ -8,7 +8,7 @@
 
 static void assert_fixes(abbe_mesh *m, const char *word) {
   FREED char *what = NULL;
-  OK(abbe_mesh_fix(m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error));
+  OK(abbe_mesh_fix(m, ABBE_NORMALS_SMOOTH, NULL, &what, &error));
   if (word) {
     assert_non_null(what);
     if (!strstr(what, word)) fail_msg("'%s' lacks '%s'", what, word);
@@ -58,7 +58,7 @@ TEST(corners_that_lie_a_little_apart_are_joined) {
   /* farther apart than that they are another mesh's business */
   OWNED(abbe_mesh, m) = torn_sphere(1e-2);
   REFUSED(ABBE_GEOMETRY, "so it has no inside to refract in",
-          abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, NULL, &error));
+          abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, NULL, NULL, &error));
 }
 
 TEST(an_inverted_mesh_is_turned) {
@@ -95,7 +95,7 @@ TEST(a_large_bent_hole_is_refused_and_counted) {
   char *what = NULL;
   const abbe_mesh_report r = test_mesh_faults(&m);
   REFUSED(ABBE_GEOMETRY, "the mesh is not a closed, consistently",
-          abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error));
+          abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, NULL, &what, &error));
   assert_null(what);
   assert_contains(last_error.text,
                   printed("%zu open edges make %zu hole%s, the widest of %zu edges, %.3g across",
@@ -103,7 +103,7 @@ TEST(a_large_bent_hole_is_refused_and_counted) {
                           r.hole_size));
   assert_contains(last_error.text,
                   printed("around (%.4g, %.4g, %.4g)", r.hole[0], r.hole[1], r.hole[2]));
-  assert_contains(last_error.text, "'repair: true' closes holes");
+  assert_contains(last_error.text, "fill its holes in a modeller");
   assert_int_equal(m.face_count, 1080);
 }
 
@@ -127,32 +127,6 @@ TEST(holes_are_measured_and_placed) {
   assert_int_equal(r.open_edges, 6);
 }
 
-/* Without being asked a bowl is no solid; repaired it is one with a lid, as small as can be. */
-TEST(repair_closes_what_bends) {
-  OWNED(abbe_mesh, m) = test_sphere(3);
-  size_t kept = 0;
-  for (size_t f = 0; f < m.face_count; f++) {
-    const uint32_t *c = m.face[f];
-    /* below a plane that leans, and an edge that is not round */
-    double most = -1;
-    for (int k = 0; k < 3; k++)
-      most = fmax(most, m.position[c[k]][2] + 0.6 * m.position[c[k]][0] * m.position[c[k]][1]);
-    if (most < 0.3) memmove(m.face[kept++], c, sizeof *m.face);
-  }
-  m.face_count = kept;
-  FREED char *what = NULL;
-  REFUSED(ABBE_GEOMETRY, "the mesh is not a closed, consistently",
-          abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, NULL, &error));
-  OK(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, true, NULL, &what, &error));
-  assert_contains(what, "1 hole closed, 1.98 across in the mesh's own unit");
-  const abbe_mesh_report r = test_mesh_faults(&m);
-  assert_int_equal(r.open_edges + r.crowded_edges + r.flipped_edges + r.degenerate_faces, 0);
-  assert_int_equal(r.shells, 1);
-  /* of half a ball, a little more */
-  assert_true(r.volume > 2.0 && r.volume < 3.2);
-  assert_true(r.area > 2 * 3.14159 && r.area < 3.6 * 3.14159);
-}
-
 TEST(faces_that_are_there_twice_are_one) {
   const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{0, 0, 0}, {1, 1, 1}, false}};
   OWNED(abbe_mesh, m) = test_boxes(box, 2);
@@ -161,68 +135,16 @@ TEST(faces_that_are_there_twice_are_one) {
   assert_near(test_mesh_faults(&m).volume, 1, 1e-12);
 }
 
-static char *repaired(abbe_mesh *m) {
-  char *what = NULL;
-  OK(abbe_mesh_fix(m, ABBE_NORMALS_AUTO, true, NULL, &what, &error));
-  return what;
-}
-
-/* Both sides of every face are there; and two bodies share a wall. */
-TEST(repair_drops_walls_of_faces_back_to_back) {
-  const test_box both[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{0, 0, 0}, {1, 1, 1}, true}};
-  OWNED(abbe_mesh, m) = test_boxes(both, 2);
-  FREED char *what = repaired(&m);
-  assert_contains(what, "12 pairs of faces back to back");
-  assert_int_equal(m.face_count, 12);
-  assert_near(test_mesh_faults(&m).volume, 1, 1e-12);
-  free(what);
-  abbe_mesh_free(&m);
-  const test_box beside[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 0, 0}, {2, 1, 1}, false}};
-  m = test_boxes(beside, 2);
-  what = repaired(&m);
-  assert_contains(what, "2 pairs of faces back to back");
-  assert_int_equal(m.face_count, 20);
-  assert_int_equal(test_mesh_faults(&m).shells, 1);
-  assert_near(test_mesh_faults(&m).volume, 2, 1e-12);
-}
-
 /* A fin on a box: whether it is to go or to be a body is for whoever made it. */
 TEST(sheets_are_refused) {
   const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{5, 5, 5}, {6, 6, 6}, false}};
-  for (int repair = 0; repair < 2; repair++) {
-    OWNED(abbe_mesh, m) = test_boxes(box, 2);
-    m.face[12][0] = 4, m.face[12][1] = 5, m.face[12][2] = 15;
-    m.face_count = 13;
-    REFUSED(ABBE_GEOMETRY, "1 edge with more than two faces, one of 3 from (1, 0, 0) to (1, 0, 1)",
-            abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, repair == 1, NULL, NULL, &error));
-    assert_contains(last_error.text, "sheets that hang on a body");
-    assert_int_equal(m.face_count, 13);
-  }
-}
-
-/* A point on another's edge, as booleans of modellers leave it: a slit without a width. */
-TEST(repair_closes_slits) {
-  const test_box box = {{0, 0, 0}, {1, 1, 1}, false};
-  OWNED(abbe_mesh, corner) = test_boxes(&box, 1);
-  MADE(abbe_mesh, m, abbe_mesh_make(9, 13, false, &m, &error));
-  memcpy(m.position, corner.position, 8 * sizeof *m.position);
-  memcpy(m.face, corner.face, 12 * sizeof *m.face);
-  m.position[8][0] = 0.4, m.position[8][2] = 1; /* on the edge from 1 to 5 */
-  /* the top's face at that edge is cut there, the front's is not */
-  const uint32_t left[3] = {1, 8, 3}, right[3] = {8, 5, 7};
-  size_t at = 0;
-  for (size_t f = 0; f < 12; f++)
-    if (m.face[f][0] == 1 && m.face[f][1] == 5 && m.face[f][2] == 7) at = f;
-  assert_true(at > 0);
-  memcpy(m.face[at], right, sizeof right);
-  const uint32_t middle[3] = {1, 8, 7};
-  memcpy(m.face[12], middle, sizeof middle);
-  (void)left;
-  assert_int_equal(test_mesh_faults(&m).open_edges, 3);
-  FREED char *what = repaired(&m);
-  const abbe_mesh_report r = test_mesh_faults(&m);
-  assert_int_equal(r.open_edges + r.crowded_edges + r.flipped_edges + r.degenerate_faces, 0);
-  assert_near(r.volume, 1, 1e-12);
+  OWNED(abbe_mesh, m) = test_boxes(box, 2);
+  m.face[12][0] = 4, m.face[12][1] = 5, m.face[12][2] = 15;
+  m.face_count = 13;
+  REFUSED(ABBE_GEOMETRY, "1 edge with more than two faces, one of 3 from (1, 0, 0) to (1, 0, 1)",
+          abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, NULL, NULL, &error));
+  assert_contains(last_error.text, "sheets that hang on a body");
+  assert_int_equal(m.face_count, 13);
 }
 
 /* Depth is told among what does not cross: a body that reaches into another is no bubble of it. */
@@ -233,7 +155,7 @@ TEST(bodies_that_cross_stay_bodies) {
   abbe_mesh *part = NULL;
   size_t solids = 0, count = 0;
   char *what = NULL;
-  OK(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, &solids, &what, &error));
+  OK(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, &solids, &what, &error));
   assert_null(what);
   assert_int_equal(solids, 2);
   OK(abbe_mesh_split(&m, &part, &count, &error));
@@ -277,7 +199,7 @@ TEST(a_surface_that_crosses_itself_is_said) {
   MADE(abbe_mesh, m, abbe_shape_ring(1, 0.3, 48, 24, &m, &error));
   for (size_t v = 0; v < m.vertex_count; v++)
     if (m.position[v][0] > 0.8) m.position[v][0] -= 2.1;
-  OK(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error));
+  OK(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, NULL, &what, &error));
   assert_contains(what, "the surface crosses itself, in ");
   assert_contains(what, ": light may go wrong there");
 }
@@ -357,7 +279,7 @@ TEST(fixing_keeps_given_normals) {
   m.given_normals = true;
   m.face_count = 10;
   for (size_t f = 0; f < 10; f++) test_turn_face(&m, f); /* and inside out */
-  OK(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, &what, &error));
+  OK(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, NULL, &what, &error));
   assert_contains(what, "hole closed");
   assert_true(m.given_normals);
   for (size_t f = 0; f < 10; f++)
@@ -369,64 +291,4 @@ TEST(fixing_keeps_given_normals) {
     }
   for (size_t f = 10; f < m.face_count; f++)
     for (int k = 0; k < 3; k++) assert_near(m.normal[m.face[f][k]][2], 1, 1e-9);
-}
-
-/* What 'repair: true' does to meshes of thousands of faults. */
-
-static bool is_closed(const abbe_mesh *m) {
-  abbe_mesh_report r;
-  OK(abbe_mesh_check(m, &r, &error));
-  return r.open_edges + r.crowded_edges + r.flipped_edges + r.degenerate_faces == 0;
-}
-
-static void assert_repairs(abbe_mesh *m, const char *word) {
-  FREED char *what = NULL;
-  OK(abbe_mesh_fix(m, ABBE_NORMALS_AUTO, true, NULL, &what, &error));
-  assert_contains(what, word);
-  assert_true(is_closed(m));
-}
-
-static void set_point(abbe_mesh *m, size_t v, double x, double y, double z) {
-  const double p[3] = {x, y, z};
-  memcpy(m->position[v], p, sizeof p);
-}
-
-static void set_face(abbe_mesh *m, size_t f, size_t a, size_t b, size_t c) {
-  const uint32_t face[3] = {(uint32_t)a, (uint32_t)b, (uint32_t)c};
-  memcpy(m->face[f], face, sizeof face);
-}
-
-/* Strips that bend three quarters round, each with a rim of so many points. */
-static abbe_mesh strips(size_t count, size_t points) {
-  const size_t pairs = points / 2, faces = 2 * (pairs - 1);
-  abbe_mesh m;
-  OK(abbe_mesh_make(count * points, count * faces, false, &m, &error));
-  for (size_t s = 0; s < count; s++) {
-    const size_t v = s * points, f = s * faces;
-    for (size_t i = 0; i < pairs; i++) {
-      const double turn = 1.5 * 3.14159265 * (double)i / (double)(pairs - 1);
-      const double x = 3 * (double)s + cos(turn), lift = 0.2 * sin(3 * turn);
-      set_point(&m, v + 2 * i, x, sin(turn), lift);
-      set_point(&m, v + 2 * i + 1, x, sin(turn), 1 + lift);
-      if (i + 1 == pairs) break;
-      set_face(&m, f + 2 * i, v + 2 * i, v + 2 * i + 2, v + 2 * i + 3);
-      set_face(&m, f + 2 * i + 1, v + 2 * i, v + 2 * i + 3, v + 2 * i + 1);
-    }
-  }
-  return m;
-}
-
-TEST(many_short_rims_are_closed) {
-  OWNED(abbe_mesh, m) = strips(500, 20);
-  assert_repairs(&m, "500 holes closed");
-}
-
-/* The search takes the cube of a rim's points: what is too much is refused before it begins. */
-TEST(many_long_rims_are_refused) {
-  OWNED(abbe_mesh, m) = strips(21, 600);
-  const size_t faces = m.face_count;
-  REFUSED(ABBE_GEOMETRY, "21 holes that bend, of up to 600 edges",
-          abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, true, NULL, NULL, &error));
-  assert_contains(last_error.text, "where the mesh was made");
-  assert_int_equal(m.face_count, faces);
 }

@@ -78,7 +78,7 @@ static void check(const test_polygon *p, const double frame[9], int digits, doub
     assert_near(r.volume, p->area, tolerance * p->area);
     const double area = 2 * p->area + length_around(p);
     assert_near(r.area, area, tolerance * area);
-    OK(abbe_mesh_fix(&m, ABBE_NORMALS_FLAT, false, NULL, &what, &error));
+    OK(abbe_mesh_fix(&m, ABBE_NORMALS_FLAT, NULL, &what, &error));
     if (what != NULL) fail_msg("%s", what);
   }
 }
