@@ -5,7 +5,6 @@
 #include "gl/accuracy/frame_times.h"
 #include "gl/accuracy/preset.h"
 #include "gl/plan/facts/render_desc.h"
-#include "library/choice/finer_scene.h"
 #include "library/choice/trace_times.h"
 #include "library/lib_handles.h"
 #include "library/lib_settings.h"
@@ -73,12 +72,17 @@ static void put_settings(FILE *to, const abbe_render_desc *desc, char after) {
 
 /* ---- plans ---- */
 
-static bool has_mesh(const abbe_scene *scene) {
-  for (size_t i = 0; i < scene->object_count; i++)
-    if (abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_REFRACTOR &&
-        scene->object[i].exact.kind == ABBE_EXACT_NONE)
-      return true;
-  return false;
+/* Faces of the refractors; *general: one of them is a general mesh. */
+static size_t count_faces(const abbe_scene *scene, bool *general) {
+  size_t faces = 0;
+  *general = false;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *object = &scene->object[i];
+    if (abbe_object_kind_of(object) != ABBE_OBJECT_REFRACTOR) continue;
+    faces += object->mesh.face_count;
+    *general |= object->exact.kind == ABBE_EXACT_NONE;
+  }
+  return faces;
 }
 
 abbe_result abbe_lib_scene_plan(const abbe_lib_scene *s, const char *const *settings, size_t count,
@@ -93,10 +97,11 @@ abbe_result abbe_lib_scene_plan(const abbe_lib_scene *s, const char *const *sett
   if (result != ABBE_OK) return result;
   result = begin(&a, error);
   if (result == ABBE_OK) {
+    bool general;
+    const size_t faces = count_faces(s->now, &general);
     fprintf(a.to, "class=%s\nhash=%016llx\nsize=%zux%zu\nmesh=%d\nmesh_faces=%zu\n",
             abbe_preset_class_name(abbe_preset_class_of(&plan)), abbe_scene_hash(s->now),
-            s->now->camera.width, s->now->camera.height, has_mesh(s->now),
-            abbe_finer_scene_faces(s->now));
+            s->now->camera.width, s->now->camera.height, general, faces);
     fprintf(a.to, "caustics=%d\nlight_views=%zu\n", plan.caustics, plan.light_view_count);
     if (s->context != NULL) fprintf(a.to, "device=%s\n", abbe_context_description(s->context));
     put_settings(a.to, &plan.desc, '\n');
@@ -232,13 +237,7 @@ abbe_result abbe_lib_scene_trace_times(abbe_lib_scene *s, const char *const *set
   return result;
 }
 
-/* ---- scenes and maps ---- */
-
-abbe_result abbe_lib_scene_refine(abbe_lib_scene *s, abbe_error *error) {
-  ABBE_REQUIRE(s, error);
-  if (s->held == s->now) abbe_library_scene_drop_renderer(s);
-  return abbe_finer_scene_cut(s->now, error);
-}
+/* ---- maps ---- */
 
 abbe_result abbe_lib_picture_resample(const abbe_lib_picture *map, const abbe_lib_picture *like,
                                       abbe_lib_picture **out, abbe_error *error) {

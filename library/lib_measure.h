@@ -61,10 +61,6 @@ abbe_result abbe_lib_scene_trace_times(abbe_lib_scene *scene, const char *const 
                                        size_t count, abbe_lib_picture **picture, char **out,
                                        abbe_error *error);
 
-/* Cuts every face of the refractors in four, flat, until something of the scene is set.
- * ABBE_NO_MEMORY. */
-abbe_result abbe_lib_scene_refine(abbe_lib_scene *scene, abbe_error *error);
-
 /* A map's light in the texels of another one of the same light. ABBE_INVALID_ARGUMENT where the two
  * lie in different places, or one is no map. */
 abbe_result abbe_lib_picture_resample(const abbe_lib_picture *map, const abbe_lib_picture *like,

@@ -1,5 +1,5 @@
 /* The pictures of lib_scene.h that the reference tracer makes. */
-#include "library/choice/finer_scene.h"
+#include "library/choice/trace_times.h"
 #include "library/lib_handles.h"
 #include "library/lib_settings.h"
 #include "validation/trace/denoise.h"

@@ -4,7 +4,7 @@
 #include "cli/options/scene_input.h"
 #include "cli/trace/trace_request.h"
 
-#include "library/choice/finer_scene.h"
+#include "library/choice/trace_times.h"
 #include "validation/trace/tracer/checkpoint.h"
 #include "validation/trace/tracer/trace_run.h"
 #include "validation/trace/tracer/tracer.h"

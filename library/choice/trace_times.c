@@ -2,7 +2,7 @@
 
 #include "base/clock.h"
 #include "gl/accuracy/frame_times.h"
-#include "library/choice/finer_scene.h"
+#include "gl/plan/plan.h"
 #include "validation/measure/compare.h"
 #include "validation/trace/denoise.h"
 #include "validation/trace/tracer/tracer.h"
@@ -275,4 +275,18 @@ unsigned long long abbe_scene_hash(const abbe_scene *s) {
   }
   for (size_t i = 0; i < s->object_count; i++) h = hash_object(h, &s->object[i]);
   return h;
+}
+
+abbe_result abbe_matched_physics(const abbe_scene *scene, double min_nm, double max_nm,
+                                 abbe_physics *out, abbe_error *error) {
+  abbe_plan plan;
+  const abbe_render_desc desc = {.min_nm = min_nm, .max_nm = max_nm};
+  ABBE_TRY(abbe_plan_make(scene, &desc, &plan, error));
+  *out = (abbe_physics){.matched = true,
+                        .orders = plan.desc.exits,
+                        .energy_share = plan.desc.energy_share,
+                        .eye_orders = plan.eye_exits,
+                        .eye_share = plan.eye_share};
+  abbe_plan_free(&plan);
+  return ABBE_OK;
 }

@@ -9,6 +9,7 @@
 
 #include "colorimetry/image/image.h"
 #include "scenes/scene.h"
+#include "validation/trace/transport/physics.h"
 
 #include <stdbool.h>
 
@@ -39,5 +40,15 @@ typedef struct abbe_trace_times {
  * of abbe_tracer_make and abbe_tracer_pass. */
 abbe_result abbe_trace_times_measure(const abbe_scene *scene, const abbe_trace_times_desc *desc,
                                      abbe_trace_times *out, abbe_image *picture, abbe_error *error);
+
+/* A number that tells whether two measurements saw one scene: of all that light meets, camera,
+ * lights, meshes, surfaces and materials. */
+unsigned long long abbe_scene_hash(const abbe_scene *scene);
+
+/* What the tracer has to leave out to model what the renderer's plan does, and no more: the physics
+ * of the default profile over that range of wavelengths (0, 0: the default one). Errors of
+ * abbe_plan_make. */
+abbe_result abbe_matched_physics(const abbe_scene *scene, double min_nm, double max_nm,
+                                 abbe_physics *out, abbe_error *error);
 
 #endif

@@ -415,14 +415,6 @@ class Command(Temporary):
             os.unlink("s.csv")
         self.assertEqual([name for name in os.listdir(".") if name.startswith(".abbe-")], [])
 
-    def test_studies(self):
-        out = self.ok(GEM, "-q", "--scaling", "-o", "s.csv", "--size", "16x16", "--frames", "1",
-                      "--backend", "cpu")
-        lines = [line.split(",") for line in read("s.csv").splitlines()]
-        sizes = [float(line[1]) for line in lines if line[0] == "faces"]
-        self.assertEqual([size / sizes[0] for size in sizes], [1, 4, 16, 64])
-        self.assertEqual(out.count("(slope "), 5)
-
     def test_whole_processes(self):
         one = [word for word in TWO if word not in ("-q",)]
         self.ok(*[word.replace("16,32", "16") for word in one], "-q", "--processes")
@@ -464,11 +456,8 @@ class Command(Temporary):
                 ("a.yaml -o s.csv --decompose --physics matched", 2,
                  "--decompose traces full and matched physics"),
                 ("a.yaml -o s.csv --reference r.exr --spp 9", 2, "and one is given"),
-                ("a.yaml -o s.csv --scaling --spp 3", 2, "--scaling times frames"),
-                ("a.yaml -o s.csv --scaling --size 16x8", 2, "a square --size"),
                 ("a.csv --grid thin", 2, "'a.csv' is a table"),
                 ("a.yaml -o s.csv --write-presets p.yaml", 2, "--write-presets reads tables"),
-                (GEM + " -q -o s.csv --scaling --size 20x20", 1, "in eights"),
                 ("a.yaml -o s.csv", 1, "a.yaml"), ("a.csv", 1, "a.csv"),
                 (GEM + " -o no/s.csv", 1, "no/s.csv"),
                 (GEM + " -o s.csv --reference no.exr", 1, "no.exr")):

@@ -60,7 +60,6 @@ _FUNCTIONS = {
     "scene_lay_map": (int, [_handle, _handle]),
     "scene_times": (int, [_handle, _texts, c_size_t, _out, _out]),
     "scene_trace_times": (int, [_handle, _texts, c_size_t, _out, _out]),
-    "scene_refine": (int, [_handle]),
     "picture_resample": (int, [_handle, _handle, _out]),
     "presets_read": (int, [c_char_p, c_char_p, _out]),
     "comparison_both_noise": (c_double, [_handle, c_char_p, c_bool]),

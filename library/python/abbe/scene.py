@@ -127,10 +127,6 @@ class Scene(Handle):
         """The same of the tracer: passes, photons (a side), filter, width, height, frames."""
         return self._timed(progress, "scene_trace_times", how)
 
-    def refine(self):
-        """Cuts every face of the refractors in four, flat, until something is changed."""
-        call("scene_refine", self._pointer)
-
     def _timed(self, progress, name, how):
         picture, pointer = c_void_p(), c_void_p()
         self._watched(progress, name, *settings(how), byref(picture), byref(pointer))

@@ -1,7 +1,7 @@
 /* The tracer as a contestant: its picture is the tracer's own to the bit, its frames are timed. */
 #include "tests/check.h"
 
-#include "library/choice/finer_scene.h"
+#include "gl/plan/plan.h"
 #include "library/choice/trace_times.h"
 #include "tests/scenes/scene_text.h"
 #include "tests/validation/trace_scene.h"
@@ -71,19 +71,20 @@ TEST(crystals_have_axes_two_indices_and_two_losses) {
   for (int i = 1; i < 4; i++) assert_true(hash[i] != hash[i - 1]);
 }
 
-TEST(a_finer_scene_keeps_its_coatings) {
-  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BRICK(
-      "flat, coating: [{layers: [[1.38, 99.6]], faces: [table]}, "
-      "{layers: [[2.1, 60]], faces: [girdle]}]") BALL("flat, coating: {layers: "
-                                                      "[[1.38, 99.6]]}"));
-  const abbe_object *brick = &scene.object[1];
-  const abbe_coatings *c = brick->coatings;
-  const size_t faces = brick->mesh.face_count;
-  FREED uint8_t *before = malloc(faces);
-  memcpy(before, c->face, faces);
-  OK(abbe_finer_scene_cut(&scene, &error));
-  assert_int_equal(brick->mesh.face_count, 4 * faces);
-  assert_int_equal(c->face_count, brick->mesh.face_count);
-  for (size_t i = 0; i < c->face_count; i++) assert_int_equal(c->face[i], before[i / 4]);
-  assert_null(scene.object[2].coatings->face); /* on all of it */
+/* Physics that match the plan: what it follows, and no more. */
+TEST(what_the_plan_follows) {
+  abbe_plan plan;
+  abbe_physics physics = {0};
+  OWNED(abbe_scene, scene) = shipped_scene("gem");
+  OK(abbe_matched_physics(&scene, 0, 0, &physics, &error));
+  OK(abbe_plan_make(&scene, NULL, &plan, &error));
+  assert_true(physics.matched);
+  assert_int_equal(physics.orders, plan.desc.exits);
+  assert_int_equal(physics.eye_orders, plan.eye_exits);
+  assert_near(physics.energy_share, plan.desc.energy_share, 0);
+  assert_near(physics.eye_share, plan.eye_share, 0);
+  assert_true(physics.orders > 1 && physics.energy_share > 0);
+  abbe_plan_free(&plan);
+  /* A request that the renderer refuses has no plan to match. */
+  assert_int_not_equal(abbe_matched_physics(&scene, 500, 400, &physics, NULL), ABBE_OK);
 }

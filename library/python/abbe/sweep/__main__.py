@@ -7,7 +7,7 @@ import sys
 import abbe
 
 from .._arguments import Parser, choice, count, near, target
-from . import grids, measure, presets, show, studies
+from . import grids, measure, presets, show
 from .table import ERRORS, TIMES, Wrong, join, load
 
 EPILOG = """\
@@ -22,7 +22,6 @@ examples:
   abbe sweep scenes/gem.yaml -o part-3.csv --reference gem.exr --part 3/8
   abbe sweep part-*.csv -o gem.csv
   abbe sweep scenes/gem.yaml -o gem.csv --decompose --report gem.md
-  abbe sweep scenes/gem.yaml -o scaling.csv --scaling --plot scaling.png
   abbe sweep *.csv --write-presets presets.yaml
 """
 MOST_VALUES = 16
@@ -102,8 +101,6 @@ def _parser():
         help="presets off the Pareto fronts of the given tables")
     add("--presets", metavar="FILE.yaml",
         help="say what these promise beside what was met (the shipped ones)")
-    add("--scaling", action="store_true", help="instead: how the time scales with photons, "
-        "wavelengths, pixels, faces, share of the view")
     add("--error", metavar="COLUMN", type=_error, default="caustic_de",
         help="that makes the Pareto front: caustic_de, map_rmse, picture_de, ... (caustic_de)")
     add("--time", metavar="|".join(TIMES), type=choice(*TIMES), default="frame",
@@ -163,10 +160,9 @@ def _check(parser, q):
     q.traced = any(getattr(q, name) is not None for name in TRACED)
     q.tables = files[0].endswith(".csv")
     if q.tables:
-        if q.part or q.lists or q.grid or q.scaling:
+        if q.part or q.lists or q.grid:
             parser.error(f"'{files[0]}' is a table: it is shown, and nothing is measured")
         return
-    shown = q.report or q.json or q.list
     if q.write_presets:
         parser.error("--write-presets reads tables: give SWEEP.csv..., and no scene")
     if len(files) > 1:
@@ -175,10 +171,6 @@ def _check(parser, q):
         parser.error("where to? Give -o FILE.csv")
     if q.lists and q.grid:
         parser.error("--grid and lists such as --wavelengths 3,7: one or the other")
-    if q.scaling and (q.lists or q.grid or q.traced or shown or
-                      (q.size and q.size[0] != q.size[1])):
-        parser.error("--scaling times frames: it goes with -o, --plot, --frames, --backend, "
-                     "--materials and a square --size alone")
     if (q.reference or q.reference_map) and q.traced:
         parser.error("--spp, --texels, --physics, --decompose, --trace-only and --traced-photons "
                      "are for a reference that is traced, and one is given")
@@ -365,8 +357,6 @@ def _run(parser, q, bar):
     _protect(parser, q, [])
     scene = q.files[0]
     sweep = measure.Sweep(scene, q.materials, q.backend, q.frames, q.size)
-    if q.scaling:
-        return studies.scaling(sweep, q, bar)
     settings = _settings(q, sweep, bar)
     if q.list:
         for setting in settings:
