@@ -1,6 +1,6 @@
 // The path of a photon's light of one wavelength: from the light through refractors to receivers.
 // Every outgoing segment that still carries energy is followed, one hit each. Who includes this gives
-// `light`, `share_limit` and keep_hit(ray, hit). HAZE: with `keeps_ways` hits are not where light meets receivers, but its segments through what scatters, from interface to interface and beyond; in place of interface_word()
+// `light`, `share_limit` and keep_hit(ray, hit). HAZE: with keeps_ways() hits are not where light meets receivers, but its segments through what scatters, from interface to interface and beyond; in place of interface_word()
 // stands the refractor in which a segment is, -1: the air.
 
 #include "photon_tints.glsl"
@@ -120,7 +120,10 @@ ReceiverHit meet_receiver(vec3 p, vec3 d, float t_min, float t_max) {
 }
 
 #ifdef HAZE
-uniform bool keeps_ways;
+// Photons of this number and above keep their segments: a dispatch has all or none of them. Mesa 25's zink may take the
+// value of an earlier dispatch for a uniform that decides a branch alone.
+uniform uint ways_from;
+bool keeps_ways(PhotonRay photon) { return photon.item >= ways_from; }
 
 // Extinction and scattering of the air, 1/m.
 vec2 air_haze(int i) { return spectra[REFRACTORS * counts.wavelengths + i].yz; }
