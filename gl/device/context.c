@@ -59,7 +59,7 @@ static abbe_result check_limits(const abbe_context *context, abbe_error *error) 
     GLint least;
     const char *what;
   } limits[] = {
-      {GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, 16, "storage buffers in a compute shader"},
+      {GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, 8, "storage buffers in a compute shader"},
       {GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, BINDING_COUNT, "places for storage buffers"},
       {GL_MAX_UNIFORM_BUFFER_BINDINGS, BINDING_COUNT, "places for uniform buffers"},
       {GL_MAX_UNIFORM_BLOCK_SIZE, 1 << 16, "bytes in a uniform buffer"},

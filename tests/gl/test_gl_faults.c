@@ -133,7 +133,7 @@ TEST(versions_and_limits) {
   } rows[] = {
       {GL_MAJOR_VERSION, 3, "offers OpenGL 3."},
       {GL_MINOR_VERSION, 4, "OpenGL 4.4; Abbe needs 4.5"},
-      {GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, 8, "8 storage buffers in a compute shader"},
+      {GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, 4, "4 storage buffers in a compute shader"},
       {GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, 8, "8 places for storage buffers"},
       {GL_MAX_UNIFORM_BUFFER_BINDINGS, 8, "8 places for uniform buffers"},
       {GL_MAX_UNIFORM_BLOCK_SIZE, 16384, "16384 bytes in a uniform buffer"},

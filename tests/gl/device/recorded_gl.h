@@ -1,6 +1,7 @@
 /* recorded_gl.h: OpenGL's calls of a test, recorded with what each program declares: what a shader
- * has written and is used in another way without that way's barrier is printed and counted. For a
- * program that is linked with --wrap=abbe_gl_load, and has one context at a time.
+ * has written and is used in another way without that way's barrier is printed and counted, and so
+ * is a program of more blocks, samplers or images than OpenGL 4.5 promises. For a program that is
+ * linked with --wrap=abbe_gl_load, and has one context at a time.
  */
 #ifndef ABBE_TESTS_GL_DEVICE_RECORDED_GL_H
 #define ABBE_TESTS_GL_DEVICE_RECORDED_GL_H
@@ -86,6 +87,13 @@ static void need_bound(GLuint name, const char *what) {
   hazards++;
 }
 
+/* most: what OpenGL 4.5 promises to one stage; the whole program has no more. */
+static void need_promised(GLint count, GLint most, const char *what) {
+  if (count <= most) return;
+  print_error("program %u has %d %s, and %d are promised\n", program, count, what, most);
+  hazards++;
+}
+
 static void need_texture(GLuint name, GLbitfield barrier) {
   assert_true(name < NAMES);
   need(&texture[root[name]], barrier, "texture", name);
@@ -150,14 +158,15 @@ static int sampler_target(GLenum type) {
   return -1;
 }
 
-static void use_uniform(GLuint i, bool images) {
+/* Returns how many images, or samplers, it is. */
+static GLint use_uniform(GLuint i, bool images) {
   static const GLenum properties[] = {GL_TYPE, GL_LOCATION, GL_ARRAY_SIZE};
   GLint value[3] = {0, -1, 1};
   resource(program, GL_UNIFORM, i, 3, properties, 3, NULL, value);
   const int target = sampler_target((GLenum)value[0]);
   const bool is_image =
       value[0] >= GL_IMAGE_1D && value[0] <= GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY;
-  if (images ? !is_image : target < 0) return;
+  if (images ? !is_image : target < 0) return 0;
   for (GLint k = 0; value[1] >= 0 && k < value[2]; k++) {
     GLint at = 0;
     uniform_value(program, value[1] + k, &at);
@@ -167,17 +176,20 @@ static void use_uniform(GLuint i, bool images) {
     else
       use_sampler(at, target);
   }
+  return value[2];
 }
 
 /* What the program in use reads, then what it writes. One does neither, and is llvmpipe's alone
  * (abbe_gpu_forget_samplers). */
 static void use_all(void) {
   static const GLenum property[] = {GL_BUFFER_BINDING};
-  GLint count = 0, uniforms = 0;
+  GLint count = 0, uniforms = 0, samplers = 0, images = 0;
   if (strstr(text[shaders[program][0]], "uniform bool never;") != NULL) return;
   interface_count(program, GL_UNIFORM, GL_ACTIVE_RESOURCES, &uniforms);
-  for (GLint i = 0; i < uniforms; i++) use_uniform((GLuint)i, false);
+  for (GLint i = 0; i < uniforms; i++) samplers += use_uniform((GLuint)i, false);
+  need_promised(samplers, 16, "samplers");
   interface_count(program, GL_UNIFORM_BLOCK, GL_ACTIVE_RESOURCES, &count);
+  need_promised(count, 14, "uniform blocks");
   for (GLint i = 0; i < count; i++) {
     GLint binding = 0;
     resource(program, GL_UNIFORM_BLOCK, (GLuint)i, 1, property, 1, NULL, &binding);
@@ -187,8 +199,10 @@ static void use_all(void) {
     need_buffer(block[binding], GL_UNIFORM_BARRIER_BIT);
   }
   interface_count(program, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &count);
+  need_promised(count, 8, "storage blocks");
   for (GLint i = 0; i < count; i++) use_storage((GLuint)i);
-  for (GLint i = 0; i < uniforms; i++) use_uniform((GLuint)i, true);
+  for (GLint i = 0; i < uniforms; i++) images += use_uniform((GLuint)i, true);
+  need_promised(images, 8, "images");
 }
 
 static void use_framebuffer(GLuint name) {

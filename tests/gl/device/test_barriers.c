@@ -1,7 +1,7 @@
 /* Memory barriers: what a shader has written is read, in whatever way, behind the barrier of that
  * way. llvmpipe needs few of them, so no picture shows on it that one is missing: here every call
- * is recorded, with what each program declares. A frame is drawn three times, for buffers are used
- * again. With --long also the programs that a GPU takes. */
+ * is recorded, with what each program declares, which must not be more than is promised. A frame is
+ * drawn three times, for buffers are used again. With --long also the programs that a GPU takes. */
 #include "tests/gl/frame.h"
 
 #include "tests/gl/device/recorded_gl.h"
