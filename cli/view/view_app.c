@@ -471,7 +471,8 @@ bool abbe_view_app_stopped(const abbe_view_session *app) {
 
 bool abbe_view_app_painted(const abbe_view_session *app) {
   if (app->inspection.pictures != NULL)
-    return app->inspection.whole && !app->inspection.stale && !app->inspection.more;
+    return app->inspection.whole && !app->inspection.stale && !app->inspection.more &&
+           !app->inspection.reading;
   return !is_stale(app);
 }
 

@@ -151,6 +151,18 @@ static void receive(abbe_view_session *app) {
   snprintf(app->note, sizeof app->note, "%s", said);
 }
 
+/* What large pictures lack, for a while. */
+static void read_on(abbe_view_session *app) {
+  inspection *i = &app->inspection;
+  abbe_error error = {0};
+  bool whole;
+  abbe_inspect_read_on(i->pictures, TILES_S, &whole, &error);
+  i->stale = i->stale || (whole && i->reading);
+  i->reading = !whole;
+  update(app);
+  if (error.code != ABBE_OK) snprintf(app->note, sizeof app->note, "%s", error.text);
+}
+
 void abbe_view_inspect_key(abbe_view_session *app, int key) {
   inspection *i = &app->inspection;
   abbe_inspect *s = i->pictures;
@@ -235,6 +247,8 @@ static void draw_file(abbe_view_session *app) {
   if (p->coarse > 0)
     abbe_view_panel_pair("in memory", "%zu x %zu; finer ones are read", image->width,
                          image->height);
+  if (p->read > 0 && p->read < 1)
+    abbe_view_panel_pair("read", "%.0f %% of its lines", 100 * p->read);
   if (image->part[0] != '\0') abbe_view_panel_pair("part", "%s", image->part);
   if (p->bands.count > 0)
     abbe_view_panel_pair("bands", "%zu, %.5g to %.5g nm", p->bands.count, p->bands.lambda_nm[0],
@@ -485,7 +499,7 @@ void abbe_view_inspect_frame(abbe_view_session *app, const abbe_ui_input *input)
   const size_t size[2] = {room ? (size_t)width : 0, room ? (size_t)height : 0};
   receive(app);
   if (room && i->pictures->zoom > 0) feed(app, input, size);
-  update(app);
+  read_on(app);
   app->input = *input;
   app->gl->ClearBufferfv(GL_COLOR, 0, background);
   if (room) draw_picture(app, size);

@@ -13,6 +13,7 @@
 enum { MOST = 8, QUEUE = 64, LEAST_ROOM = 1 << 16, LOOK_MS = 200 };
 #define MOST_PACKET ((size_t)256 << 20)
 #define MOST_WAITING ((size_t)256 << 20) /* bytes of packets that nobody has taken */
+#define MOST_ROOM ((size_t)512 << 20)    /* bytes of all packets that are not whole */
 
 typedef struct sender {
   int socket; /* below 0: none */
@@ -66,10 +67,20 @@ static void refuse(abbe_view_listener *l, sender *s, const char *sentence) {
   push(l, (unsigned char *)strdup(sentence), 0);
 }
 
-static bool grow(sender *s) {
-  if (s->room - s->size >= LEAST_ROOM) return true;
-  const size_t room = 2 * s->room + LEAST_ROOM;
-  unsigned char *bytes = realloc(s->bytes, room);
+static size_t packet_length(const sender *s, size_t at) {
+  if (s->size - at < 4) return 0;
+  const unsigned char *c = s->bytes + at;
+  return (size_t)c[0] | (size_t)c[1] << 8 | (size_t)c[2] << 16 | (size_t)c[3] << 24;
+}
+
+/* As far as the packet needs that has begun. False: all together would need too much. */
+static bool grow(const abbe_view_listener *l, sender *s) {
+  const size_t length = packet_length(s, 0), twice = 2 * s->size;
+  const size_t room = (length > twice ? twice : length) + LEAST_ROOM;
+  size_t all = room;
+  for (size_t i = 0; i < MOST; i++) all += &l->from[i] == s ? 0 : l->from[i].room;
+  if (s->room > s->size && room <= s->room && s->room < 2 * room) return true;
+  unsigned char *bytes = all <= MOST_ROOM ? realloc(s->bytes, room) : NULL;
   if (bytes == NULL) return false;
   s->bytes = bytes;
   s->room = room;
@@ -80,18 +91,16 @@ static bool grow(sender *s) {
 static bool take_packets(abbe_view_listener *l, sender *s, abbe_error *why) {
   size_t at = 0;
   while (s->size - at >= 4) {
-    const unsigned char *c = s->bytes + at;
-    const size_t length =
-        (size_t)c[0] | (size_t)c[1] << 8 | (size_t)c[2] << 16 | (size_t)c[3] << 24;
+    const size_t length = packet_length(s, at);
     if (length < 5 || length > MOST_PACKET) {
       abbe_error_set(why, ABBE_PARSE, "a packet of %zu bytes is refused; 5 to %zu are right",
                      length, MOST_PACKET);
       return false;
     }
     if (s->size - at < length) break;
-    if (abbe_inspect_take_packet(NULL, c, length, NULL, why) != ABBE_OK) return false;
+    if (abbe_inspect_take_packet(NULL, s->bytes + at, length, NULL, why) != ABBE_OK) return false;
     unsigned char *own = malloc(length);
-    if (own != NULL) push(l, memcpy(own, c, length), length);
+    if (own != NULL) push(l, memcpy(own, s->bytes + at, length), length);
     at += length;
   }
   s->size -= at;
@@ -101,8 +110,8 @@ static bool take_packets(abbe_view_listener *l, sender *s, abbe_error *why) {
 
 static void receive(abbe_view_listener *l, sender *s) {
   abbe_error why = {0};
-  if (!grow(s)) {
-    refuse(l, s, "no memory for a packet");
+  if (!grow(l, s)) {
+    refuse(l, s, "no memory for a packet, or more than 512 MiB of packets at once");
     return;
   }
   const ssize_t n = recv(s->socket, s->bytes + s->size, s->room - s->size, 0);

@@ -40,6 +40,7 @@ typedef struct abbe_view_inspection {
   abbe_view_listener *listener; /* of other pictures; or NULL */
   size_t received;              /* packets of them */
   bool more;                    /* some may wait */
+  bool reading;                 /* large pictures are not whole yet */
   abbe_inspect_look look;       /* as it is wished, of picture `at`; */
   size_t at;
   bool stale, whole; /* it is not shown yet; no tile is missing */

@@ -1,7 +1,7 @@
 #include "colorimetry/image/exr.h"
 
+#include "base/clock.h"
 #include "base/file.h"
-#include "base/number.h"
 #include "colorimetry/image/exr_parts.h"
 
 #include <errno.h>
@@ -50,80 +50,6 @@ static int64_t stream_size(exr_const_context_t context, void *user) {
   return ((const abbe_exr_stream *)user)->size;
 }
 
-/* abbe:stored_unit, which whole files are in; *unit stays what it is where the text is none. */
-static bool read_unit(const char *text, double *unit) {
-  const char *end;
-  int exponent;
-  double value;
-  if (!abbe_number_read(text, &end, &value) || *end != '\0' || !isfinite(value) ||
-      frexp(value, &exponent) != 0.5)
-    return false;
-  *unit = value;
-  return true;
-}
-
-/* The layout of Ocean: CHANNEL.wavelength is what light the channel has, in metres. It is called
- * as its wavelength is in the spectral layout. */
-static abbe_result name_band(const exr_attribute_t *a, const abbe_exr_stream *s, abbe_image *image,
-                             abbe_error *error) {
-  const char *dot = strrchr(a->name, '.');
-  double metres = NAN;
-  char name[64], digits[32];
-  const char *end = "";
-  if (dot == NULL || strcmp(dot, ".wavelength") != 0) return ABBE_OK;
-  size_t c = 0;
-  while (c < image->channels && (strlen(image->channel[c]) != (size_t)(dot - a->name) ||
-                                 memcmp(image->channel[c], a->name, (size_t)(dot - a->name)) != 0))
-    c++;
-  if (c == image->channels) return ABBE_OK;
-  if (a->type == EXR_ATTR_FLOAT) metres = (double)a->f;
-  if (a->type == EXR_ATTR_DOUBLE) metres = a->d;
-  if (a->type == EXR_ATTR_STRING && !abbe_number_read(a->string->str, &end, &metres)) metres = NAN;
-  if (*end != '\0' || !(metres > 1e-12 && metres < 1))
-    return abbe_error_set(error, ABBE_PARSE,
-                          "%s: its attribute %s is no wavelength in metres, such as 5.5e-7",
-                          s->path, a->name);
-  abbe_number_format(digits, sizeof digits, "%.6g", 1e9 * metres); /* what a float has */
-  abbe_number_read(digits, &end, &metres);
-  abbe_image_band_name(metres, name, sizeof name);
-  char *text = strdup(name);
-  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", s->path);
-  free(image->channel[c]);
-  image->channel[c] = text;
-  return ABBE_OK;
-}
-
-static abbe_result read_attributes(exr_context_t context, int part, const abbe_exr_stream *s,
-                                   abbe_image *image, double *unit, abbe_error *error) {
-  int32_t count = 0;
-  if (exr_get_attribute_count(context, part, &count) != 0) return ABBE_OK;
-  for (int32_t i = 0; i < count; i++) {
-    const exr_attribute_t *a = NULL;
-    if (exr_get_attribute_by_index(context, part, EXR_ATTR_LIST_FILE_ORDER, i, &a) != 0) continue;
-    if (a->type == EXR_ATTR_CHROMATICITIES && strcmp(a->name, "chromaticities") == 0) {
-      const exr_attr_chromaticities_t *c = a->chromaticities;
-      const double xy[8] = {c->red_x,  c->red_y,  c->green_x, c->green_y,
-                            c->blue_x, c->blue_y, c->white_x, c->white_y};
-      memcpy(image->xy, xy, sizeof xy);
-    }
-    ABBE_TRY(name_band(a, s, image, error));
-    if (a->type != EXR_ATTR_STRING || a->name[0] == '\0' || a->string->str == NULL) continue;
-    if (strcmp(a->name, ABBE_EXR_STORAGE_NAME) == 0) continue;
-    if (strcmp(a->name, ABBE_EXR_UNIT_NAME) == 0) {
-      if (read_unit(a->string->str, unit)) continue;
-      return abbe_error_set(error, ABBE_PARSE, "%s: %s is '%.40s'; a power of two is right",
-                            s->path, ABBE_EXR_UNIT_NAME, a->string->str);
-    }
-    if (image->attribute_count == ABBE_IMAGE_MAX_ATTRIBUTES)
-      return abbe_error_set(error, ABBE_UNSUPPORTED,
-                            "%s: it has more than %d text attributes, which is as many as can be "
-                            "read",
-                            s->path, ABBE_IMAGE_MAX_ATTRIBUTES);
-    ABBE_TRY(abbe_image_set_attribute(image, a->name, a->string->str, error));
-  }
-  return ABBE_OK;
-}
-
 static abbe_image_window window_of(exr_attr_box2i_t box) {
   return (abbe_image_window){box.min.x, box.min.y, box.max.x, box.max.y};
 }
@@ -142,16 +68,32 @@ static abbe_result make_image(exr_context_t context, const abbe_exr_stream *s,
   if (l->parts > 1)
     snprintf(image->part, sizeof image->part, "%d%s%.24s%s of %d", l->part + 1, l->name ? " '" : "",
              l->name ? l->name : "", l->name ? "'" : "", l->parts);
-  return result == ABBE_OK ? read_attributes(context, l->part, s, image, unit, error) : result;
+  return result == ABBE_OK ? abbe_exr_attributes_read(context, l->part, s, image, unit, error)
+                           : result;
 }
+
+/* A file whose chunks are read; `next` and what follows are of scan lines alone: the chunk that
+ * comes next, `step` chunks after the one before, of all in a pass. In the first pass lines that
+ * are not there yet are as the one above them. */
+struct abbe_exr_reader {
+  abbe_exr_stream stream;
+  char *path;
+  FILE *file;
+  exr_context_t context;
+  abbe_exr_layout layout;
+  exr_decode_pipeline_t pipe;
+  exr_result_t (*decompress)(exr_decode_pipeline_t *pipe); /* the library's; NULL: nothing packs */
+  double unit;
+  int64_t next, step, read, chunks;
+  bool again; /* not the first pass */
+};
 
 /* Where the chunk that is decoded goes: its first sample belongs to the picture's pixel (x, y),
  * which may lie outside. */
 typedef struct place {
+  const abbe_exr_reader *reader;
   const abbe_image *image;
-  int part;
   int64_t x, y;
-  exr_result_t (*decompress)(exr_decode_pipeline_t *pipe); /* the library's; NULL: nothing packs */
 } place;
 
 static uint32_t little_endian(const uint8_t *bytes, int count) {
@@ -195,7 +137,7 @@ static exr_result_t unpack(exr_decode_pipeline_t *pipe) {
       const bool shown = y >= 0 && y < (int64_t)image->height;
       for (int64_t x = from; shown && x < past; x++)
         image->data[(y * width + to->x + x) * (int64_t)image->channels + c] =
-            sample_of(line + x * bytes, type);
+            (float)(to->reader->unit * (double)sample_of(line + x * bytes, type));
       line += chunk_width * bytes;
     }
   return EXR_ERR_SUCCESS;
@@ -205,17 +147,15 @@ static exr_result_t unpack(exr_decode_pipeline_t *pipe) {
 static exr_result_t decompress(exr_decode_pipeline_t *pipe) {
   const place *to = pipe->decoding_user_data;
   if (pipe->chunk.packed_size == pipe->chunk.unpacked_size) return EXR_ERR_SUCCESS;
-  return to->decompress == NULL ? EXR_ERR_CORRUPT_CHUNK : to->decompress(pipe);
+  return to->reader->decompress == NULL ? EXR_ERR_CORRUPT_CHUNK : to->reader->decompress(pipe);
 }
 
-static exr_result_t begin(exr_context_t context, const exr_chunk_info_t *chunk, place *to,
-                          exr_decode_pipeline_t *pipe) {
-  exr_result_t rv = exr_decoding_initialize(context, to->part, chunk, pipe);
-  if (rv == 0) rv = exr_decoding_choose_default_routines(context, to->part, pipe);
-  to->decompress = pipe->decompress_fn;
-  pipe->decoding_user_data = to;
-  pipe->decompress_fn = decompress;
-  pipe->unpack_and_convert_fn = unpack;
+static exr_result_t begin(abbe_exr_reader *r, const exr_chunk_info_t *chunk) {
+  exr_result_t rv = exr_decoding_initialize(r->context, r->layout.part, chunk, &r->pipe);
+  if (rv == 0) rv = exr_decoding_choose_default_routines(r->context, r->layout.part, &r->pipe);
+  r->decompress = r->pipe.decompress_fn;
+  r->pipe.decompress_fn = decompress;
+  r->pipe.unpack_and_convert_fn = unpack;
   return rv;
 }
 
@@ -228,14 +168,16 @@ static bool is_whole(const exr_decode_pipeline_t *pipe) {
 }
 
 /* Decodes one chunk of at most width x height pixels. */
-static exr_result_t read_chunk(exr_context_t context, const exr_chunk_info_t *chunk, int64_t width,
-                               int64_t height, place *to, exr_decode_pipeline_t *pipe) {
+static exr_result_t read_chunk(abbe_exr_reader *r, const exr_chunk_info_t *chunk, int64_t width,
+                               int64_t height, place *to) {
   if (chunk->width < 1 || chunk->height < 1 || chunk->width > width || chunk->height > height)
     return EXR_ERR_CORRUPT_CHUNK;
-  exr_result_t rv = pipe->context == NULL ? begin(context, chunk, to, pipe)
-                                          : exr_decoding_update(context, to->part, chunk, pipe);
-  if (rv == 0 && !is_whole(pipe)) rv = EXR_ERR_CORRUPT_CHUNK;
-  return rv == 0 ? exr_decoding_run(context, to->part, pipe) : rv;
+  exr_result_t rv = r->pipe.context == NULL
+                        ? begin(r, chunk)
+                        : exr_decoding_update(r->context, r->layout.part, chunk, &r->pipe);
+  r->pipe.decoding_user_data = to;
+  if (rv == 0 && !is_whole(&r->pipe)) rv = EXR_ERR_CORRUPT_CHUNK;
+  return rv == 0 ? exr_decoding_run(r->context, r->layout.part, &r->pipe) : rv;
 }
 
 static bool is_shown(const place *to, int64_t width, int64_t height) {
@@ -243,33 +185,55 @@ static bool is_shown(const place *to, int64_t width, int64_t height) {
          to->y < (int64_t)to->image->height && to->y + height > 0;
 }
 
-/* x, y: of the data window's pixels; chunks of which nothing is shown are not decoded. */
-static exr_result_t read_lines(exr_context_t context, const abbe_exr_layout *l,
-                               const abbe_image *image, exr_decode_pipeline_t *pipe) {
+static void repeat_line(const abbe_image *image, int64_t line, int64_t past) {
+  const size_t row = image->width * image->channels;
+  if (line < 0) return;
+  for (int64_t y = line + 1; y < past && y < (int64_t)image->height; y++)
+    memcpy(image->data + (size_t)y * row, image->data + (size_t)line * row, row * sizeof(float));
+}
+
+/* Chunks of which nothing is shown are not decoded. */
+static exr_result_t read_lines(abbe_exr_reader *r, int64_t chunk, const abbe_image *image) {
+  const abbe_exr_layout *l = &r->layout;
   int32_t lines = 0;
   const int64_t width = abbe_exr_width(l->data), height = abbe_exr_height(l->data);
   const int64_t dx = (int64_t)l->data.min.x - l->display.min.x;
   const int64_t dy = (int64_t)l->data.min.y - l->display.min.y;
-  place to = {.image = image, .part = l->part, .x = dx};
-  exr_result_t rv = exr_get_scanlines_per_chunk(context, l->part, &lines);
-  if (rv == 0 && lines < 1) return EXR_ERR_CORRUPT_CHUNK;
-  for (int64_t y = 0; rv == 0 && y < height; y += lines) {
-    exr_chunk_info_t chunk = {0};
-    to.y = dy + y;
-    if (!is_shown(&to, width, lines)) continue;
-    rv = exr_read_scanline_chunk_info(context, l->part, (int)(l->data.min.y + y), &chunk);
-    if (rv == 0) rv = read_chunk(context, &chunk, width, height - y, &to, pipe);
+  exr_chunk_info_t info = {0};
+  exr_result_t rv = exr_get_scanlines_per_chunk(r->context, l->part, &lines);
+  if (rv != 0 || lines < 1) return rv != 0 ? rv : EXR_ERR_CORRUPT_CHUNK;
+  const int64_t y = chunk * lines;
+  r->chunks = (height + lines - 1) / lines;
+  place to = {.reader = r, .image = image, .x = dx, .y = dy + y};
+  if (!is_shown(&to, width, lines)) return 0;
+  rv = exr_read_scanline_chunk_info(r->context, l->part, (int)(l->data.min.y + y), &info);
+  if (rv == 0) rv = read_chunk(r, &info, width, height - y, &to);
+  const int64_t past = y + r->step * lines < height ? y + r->step * lines : height;
+  if (rv == 0 && !r->again) repeat_line(image, dy + y + lines - 1, dy + past);
+  return rv;
+}
+
+/* The next chunk; of what is there each further pass reads those in the middle between. */
+static exr_result_t read_next(abbe_exr_reader *r, const abbe_image *image) {
+  const exr_result_t rv = read_lines(r, r->next, image);
+  r->read++;
+  r->next += r->again ? 2 * r->step : r->step;
+  while (r->next >= r->chunks && r->step > 1) {
+    r->again = true;
+    r->step /= 2;
+    r->next = r->step;
   }
   return rv;
 }
 
-static exr_result_t read_tiles(exr_context_t context, const abbe_exr_layout *l, int level,
-                               const abbe_image *image, exr_decode_pipeline_t *pipe) {
+static exr_result_t read_tiles(abbe_exr_reader *r, const abbe_exr_layout *l, int level,
+                               const abbe_image *image) {
+  exr_context_t context = r->context;
   uint32_t w = 0, h = 0;
   exr_tile_level_mode_t levels;
   exr_tile_round_mode_t rounding;
   const int64_t width = abbe_exr_width(l->data), height = abbe_exr_height(l->data);
-  place to = {.image = image, .part = l->part};
+  place to = {.reader = r, .image = image};
   exr_result_t rv = exr_get_tile_descriptor(context, l->part, &w, &h, &levels, &rounding);
   if (rv == 0 && (w < 1 || h < 1)) return EXR_ERR_CORRUPT_CHUNK;
   for (int64_t y = 0; rv == 0 && y < height; y += h)
@@ -280,18 +244,10 @@ static exr_result_t read_tiles(exr_context_t context, const abbe_exr_layout *l, 
       if (!is_shown(&to, w, h)) continue;
       rv = exr_read_tile_chunk_info(context, l->part, (int)(x / w), (int)(y / h), level, level,
                                     &chunk);
-      if (rv == 0) rv = read_chunk(context, &chunk, width - x, height - y, &to, pipe);
+      if (rv == 0) rv = read_chunk(r, &chunk, width - x, height - y, &to);
     }
   return rv;
 }
-
-/* Which pixels are wanted: zeroed, all of the picture. */
-typedef struct request {
-  abbe_exr_levels *levels; /* NULL: pixels; else these alone */
-  bool by_level;
-  size_t level;
-  const size_t *window;
-} request;
 
 static size_t count_levels(exr_context_t context, const abbe_exr_layout *l) {
   int32_t x = 1, y = 1;
@@ -303,57 +259,32 @@ static size_t count_levels(exr_context_t context, const abbe_exr_layout *l) {
 }
 
 /* The layout becomes that of a level, whose first pixel is (0, 0), and of a window in it. */
-static abbe_result choose_level(exr_context_t context, const abbe_exr_stream *s, const request *r,
+static abbe_result choose_level(const abbe_exr_reader *r, size_t level, const size_t *w,
                                 abbe_exr_layout *l, abbe_error *error) {
   int32_t width = 0, height = 0;
-  if (!r->by_level) return ABBE_OK;
-  if (r->level >= count_levels(context, l))
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: it has no level %zu", s->path,
-                          r->level);
+  const abbe_exr_stream *s = &r->stream;
+  if (level >= count_levels(r->context, l))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: it has no level %zu", s->path, level);
   width = (int32_t)abbe_exr_width(l->data);
   height = (int32_t)abbe_exr_height(l->data);
   exr_result_t rv = 0;
-  if (r->level > 0)
-    rv = exr_get_level_sizes(context, l->part, (int)r->level, (int)r->level, &width, &height);
+  if (level > 0)
+    rv = exr_get_level_sizes(r->context, l->part, (int)level, (int)level, &width, &height);
   if (rv != 0) return abbe_exr_fail(s, rv, error);
   l->data.min.x = l->data.min.y = 0;
   l->data.max.x = width - 1;
   l->data.max.y = height - 1;
   l->display = l->data;
-  const size_t *w = r->window;
   if (w == NULL) return ABBE_OK;
   if (w[0] > w[2] || w[1] > w[3] || w[2] >= (size_t)width || w[3] >= (size_t)height)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: pixels %zu, %zu to %zu, %zu are not in its level %zu of %d x %d",
-                          s->path, w[0], w[1], w[2], w[3], r->level, (int)width, (int)height);
+                          s->path, w[0], w[1], w[2], w[3], level, (int)width, (int)height);
   l->display.min.x = (int32_t)w[0];
   l->display.min.y = (int32_t)w[1];
   l->display.max.x = (int32_t)w[2];
   l->display.max.y = (int32_t)w[3];
   return ABBE_OK;
-}
-
-static abbe_result read_image(exr_context_t context, const abbe_exr_stream *s, const request *r,
-                              abbe_image *image, abbe_error *error) {
-  abbe_exr_layout l = {0};
-  double unit = 1;
-  ABBE_TRY(abbe_exr_layout_find(context, s, &l, error));
-  if (r->levels != NULL) {
-    *r->levels =
-        (abbe_exr_levels){count_levels(context, &l), (size_t)abbe_exr_width(l.display),
-                          (size_t)abbe_exr_height(l.display), (size_t)l.channels->num_channels};
-    return ABBE_OK;
-  }
-  ABBE_TRY(choose_level(context, s, r, &l, error));
-  ABBE_TRY(make_image(context, s, &l, image, &unit, error));
-  exr_decode_pipeline_t pipe = EXR_DECODE_PIPELINE_INITIALIZER;
-  exr_result_t rv = l.storage == EXR_STORAGE_TILED
-                        ? read_tiles(context, &l, (int)r->level, image, &pipe)
-                        : read_lines(context, &l, image, &pipe);
-  exr_decoding_destroy(context, &pipe);
-  size_t count = unit == 1 ? 0 : image->width * image->height * image->channels;
-  for (size_t i = 0; i < count; i++) image->data[i] = (float)((double)image->data[i] * unit);
-  return rv == 0 ? ABBE_OK : abbe_exr_fail(s, rv, error);
 }
 
 size_t abbe_exr_file_length(const char *path) {
@@ -375,52 +306,114 @@ static abbe_result open_stream(abbe_exr_stream *s, FILE **file, abbe_error *erro
   return ABBE_OK;
 }
 
-static abbe_result read_stream(abbe_exr_stream *s, const request *r, abbe_image *image,
-                               abbe_error *error) {
+static exr_result_t start(abbe_exr_reader *r) {
   exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
   setup.error_handler_fn = on_error;
-  setup.user_data = s;
+  setup.user_data = &r->stream;
   setup.read_fn = read_at;
   setup.size_fn = stream_size;
   setup.max_image_width = setup.max_image_height = ABBE_IMAGE_MAX_SIDE;
   setup.max_tile_width = setup.max_tile_height = ABBE_IMAGE_MAX_SIDE;
   setup.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
-  exr_context_t context = NULL;
-  exr_result_t rv = exr_start_read(&context, s->path, &setup);
-  if (rv != 0) return abbe_exr_fail_open(s, rv, error);
-  const abbe_result result = read_image(context, s, r, image, error);
-  exr_finish(&context);
+  return exr_start_read(&r->context, r->path, &setup);
+}
+
+abbe_result abbe_exr_open(const char *path, abbe_exr_reader **out, abbe_error *error) {
+  abbe_exr_reader *r = calloc(1, sizeof *r);
+  *out = NULL;
+  if (r != NULL) r->path = strdup(path);
+  if (r == NULL || r->path == NULL) {
+    free(r);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", path);
+  }
+  r->stream = (abbe_exr_stream){.path = r->path, .fd = -1};
+  r->unit = 1;
+  abbe_result result = open_stream(&r->stream, &r->file, error);
+  const exr_result_t rv = result == ABBE_OK ? start(r) : 0;
+  if (rv != 0) result = abbe_exr_fail_open(&r->stream, rv, error);
+  if (result == ABBE_OK) result = abbe_exr_layout_find(r->context, &r->stream, &r->layout, error);
+  if (result == ABBE_OK)
+    *out = r;
+  else
+    abbe_exr_close(r);
   return result;
 }
 
-static abbe_result read_request(const char *path, const request *r, abbe_image *out,
-                                abbe_error *error) {
+void abbe_exr_close(abbe_exr_reader *r) {
+  if (r == NULL) return;
+  if (r->context != NULL) exr_decoding_destroy(r->context, &r->pipe);
+  if (r->context != NULL) exr_finish(&r->context);
+  if (r->file != NULL) fclose(r->file);
+  free(r->path);
+  free(r);
+}
+
+void abbe_exr_find_levels(const abbe_exr_reader *r, abbe_exr_levels *out) {
+  const abbe_exr_layout *l = &r->layout;
+  *out = (abbe_exr_levels){count_levels(r->context, l), (size_t)abbe_exr_width(l->display),
+                           (size_t)abbe_exr_height(l->display), (size_t)l->channels->num_channels};
+}
+
+/* What of an image could be made is given up where it cannot be read. */
+static abbe_result finish(const abbe_exr_reader *r, exr_result_t rv, abbe_image *image,
+                          abbe_error *error) {
+  if (rv == 0) return ABBE_OK;
+  abbe_image_free(image);
+  return abbe_exr_fail(&r->stream, rv, error);
+}
+
+static abbe_result make(abbe_exr_reader *r, const abbe_exr_layout *l, abbe_image *out,
+                        abbe_error *error) {
   *out = (abbe_image){0};
-  abbe_exr_stream s = {.path = path, .fd = -1};
-  FILE *file = NULL;
-  abbe_image image = {0};
-  abbe_result result = open_stream(&s, &file, error);
-  if (result == ABBE_OK) result = read_stream(&s, r, &image, error);
-  if (file != NULL) fclose(file);
-  if (result != ABBE_OK)
-    abbe_image_free(&image);
-  else
-    *out = image;
+  r->unit = 1;
+  const abbe_result result = make_image(r->context, &r->stream, l, out, &r->unit, error);
+  if (result != ABBE_OK) abbe_image_free(out);
   return result;
+}
+
+abbe_result abbe_exr_read_level(abbe_exr_reader *r, size_t level, const size_t window[4],
+                                abbe_image *out, abbe_error *error) {
+  abbe_exr_layout l = r->layout;
+  *out = (abbe_image){0};
+  if (l.storage != EXR_STORAGE_TILED)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: it has no levels", r->path);
+  ABBE_TRY(choose_level(r, level, window, &l, error));
+  ABBE_TRY(make(r, &l, out, error));
+  return finish(r, read_tiles(r, &l, (int)level, out), out, error);
+}
+
+abbe_result abbe_exr_read_first(abbe_exr_reader *r, size_t most, abbe_image *out,
+                                abbe_error *error) {
+  const abbe_exr_layout *l = &r->layout;
+  exr_result_t rv = 0;
+  ABBE_TRY(make(r, l, out, error));
+  r->next = r->read = 0;
+  r->again = false;
+  for (r->step = 1; out->width * out->height / (size_t)r->step > most / out->channels;)
+    r->step *= 2;
+  if (l->storage == EXR_STORAGE_TILED) {
+    rv = read_tiles(r, l, 0, out);
+  } else {
+    do rv = read_next(r, out);
+    while (rv == 0 && !r->again && r->next < r->chunks);
+  }
+  return finish(r, rv, out, error);
+}
+
+abbe_result abbe_exr_read_on(abbe_exr_reader *r, double seconds, abbe_image *image, double *share,
+                             abbe_error *error) {
+  const double until = abbe_clock_seconds() + seconds;
+  exr_result_t rv = 0;
+  while (rv == 0 && r->read < r->chunks && abbe_clock_seconds() < until) rv = read_next(r, image);
+  *share = r->read < r->chunks ? (double)r->read / (double)r->chunks : 1;
+  return rv == 0 ? ABBE_OK : abbe_exr_fail(&r->stream, rv, error);
 }
 
 abbe_result abbe_exr_read(const char *path, abbe_image *out, abbe_error *error) {
-  return read_request(path, &(request){0}, out, error);
-}
-
-abbe_result abbe_exr_find_levels(const char *path, abbe_exr_levels *out, abbe_error *error) {
-  abbe_image none;
-  *out = (abbe_exr_levels){0};
-  return read_request(path, &(request){.levels = out}, &none, error);
-}
-
-abbe_result abbe_exr_read_level(const char *path, size_t level, const size_t window[4],
-                                abbe_image *out, abbe_error *error) {
-  return read_request(path, &(request){.by_level = true, .level = level, .window = window}, out,
-                      error);
+  abbe_exr_reader *r = NULL;
+  *out = (abbe_image){0};
+  ABBE_TRY(abbe_exr_open(path, &r, error));
+  const abbe_result result = abbe_exr_read_first(r, SIZE_MAX, out, error);
+  abbe_exr_close(r);
+  return result;
 }

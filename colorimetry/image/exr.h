@@ -35,6 +35,13 @@ abbe_result abbe_exr_write_half(const char *path, const abbe_image *image, abbe_
  * cannot decode (DWA before 3.1.8, HTJ2K before 3.4.0), with the version that can. */
 abbe_result abbe_exr_read(const char *path, abbe_image *out, abbe_error *error);
 
+/* A file that stays open: what is read of it is of one file, whatever takes its name. */
+typedef struct abbe_exr_reader abbe_exr_reader;
+
+/* Reads no pixels. Errors of abbe_exr_read. */
+abbe_result abbe_exr_open(const char *path, abbe_exr_reader **out, abbe_error *error);
+void abbe_exr_close(abbe_exr_reader *reader);
+
 /* What a part holds whose tiles have levels of detail: a picture and its halves (MIPMAP_LEVELS, or
  * RIPMAP_LEVELS with both sides alike), each of the same display and data window. */
 typedef struct abbe_exr_levels {
@@ -42,14 +49,23 @@ typedef struct abbe_exr_levels {
   size_t width, height, channels;
 } abbe_exr_levels;
 
-/* Reads no pixels. Errors of abbe_exr_read. */
-abbe_result abbe_exr_find_levels(const char *path, abbe_exr_levels *out, abbe_error *error);
+void abbe_exr_find_levels(const abbe_exr_reader *reader, abbe_exr_levels *out);
 
 /* The pixels of a level, from 0 the finest, in the window x0, y0, x1, y1 of that level, both ends
  * included; NULL: all. Only tiles that lie in it are read. Errors of abbe_exr_read;
- * ABBE_INVALID_ARGUMENT for a level or a window that is not there. */
-abbe_result abbe_exr_read_level(const char *path, size_t level, const size_t window[4],
+ * ABBE_INVALID_ARGUMENT for a level or a window that is not there, and where there are no tiles. */
+abbe_result abbe_exr_read_level(abbe_exr_reader *reader, size_t level, const size_t window[4],
                                 abbe_image *out, abbe_error *error);
+
+/* The picture as abbe_exr_read has it; but of scan lines with more than so many numbers every n-th
+ * chunk alone, about so many numbers, each line between as the one above it. */
+abbe_result abbe_exr_read_first(abbe_exr_reader *reader, size_t most, abbe_image *out,
+                                abbe_error *error);
+
+/* Reads for so many seconds into that image what it lacks; *share: of its chunks that are there.
+ * Errors of abbe_exr_read. */
+abbe_result abbe_exr_read_on(abbe_exr_reader *reader, double seconds, abbe_image *image,
+                             double *share, abbe_error *error);
 
 /* How many bytes of path name the file: those before the last '#' where there is no file of the
  * whole name, else all. */

@@ -1,4 +1,6 @@
 #include "colorimetry/image/exr.h"
+
+#include "base/number.h"
 #include "colorimetry/image/exr_parts.h"
 
 #include <math.h>
@@ -238,4 +240,84 @@ abbe_result abbe_exr_layout_find(exr_context_t context, const abbe_exr_stream *s
   ABBE_TRY(check_codec(s, find_codec(s, out->part), error));
   ABBE_TRY(check_tiles(context, s, out, error));
   return check_layout(s, out, error);
+}
+
+/* abbe:stored_unit, which whole files are in; *unit stays what it is where the text is none. */
+static bool read_unit(const char *text, double *unit) {
+  const char *end;
+  int exponent;
+  double value;
+  if (!abbe_number_read(text, &end, &value) || *end != '\0' || !isfinite(value) ||
+      frexp(value, &exponent) != 0.5)
+    return false;
+  *unit = value;
+  return true;
+}
+
+/* The layout of Ocean: CHANNEL.wavelength is what light the channel has, in metres or as a text
+ * with m or nm. It is called as its wavelength is in the spectral layout; where the text says
+ * anything else, it keeps its name. */
+static abbe_result name_band(const exr_attribute_t *a, const abbe_exr_stream *s, abbe_image *image,
+                             abbe_error *error) {
+  const char *dot = strrchr(a->name, '.');
+  double metres = NAN;
+  char name[64], digits[32];
+  const char *end = "";
+  if (dot == NULL || strcmp(dot, ".wavelength") != 0) return ABBE_OK;
+  size_t c = 0;
+  while (c < image->channels && (strlen(image->channel[c]) != (size_t)(dot - a->name) ||
+                                 memcmp(image->channel[c], a->name, (size_t)(dot - a->name)) != 0))
+    c++;
+  if (c == image->channels) return ABBE_OK;
+  if (a->type == EXR_ATTR_FLOAT) metres = (double)a->f;
+  if (a->type == EXR_ATTR_DOUBLE) metres = a->d;
+  if (a->type == EXR_ATTR_STRING) {
+    if (!abbe_number_read(a->string->str, &end, &metres)) return ABBE_OK;
+    end += strspn(end, " ");
+    if (strcmp(end, "nm") == 0) metres *= 1e-9;
+    if (strcmp(end, "nm") != 0 && strcmp(end, "m") != 0 && *end != '\0') return ABBE_OK;
+  }
+  if (!(metres > 1e-12 && metres < 1))
+    return abbe_error_set(error, ABBE_PARSE,
+                          "%s: its attribute %s is no wavelength in metres, such as 5.5e-7",
+                          s->path, a->name);
+  abbe_number_format(digits, sizeof digits, "%.6g", 1e9 * metres); /* what a float has */
+  abbe_number_read(digits, &end, &metres);
+  abbe_image_band_name(metres, name, sizeof name);
+  char *text = strdup(name);
+  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", s->path);
+  free(image->channel[c]);
+  image->channel[c] = text;
+  return ABBE_OK;
+}
+
+abbe_result abbe_exr_attributes_read(exr_context_t context, int part, const abbe_exr_stream *s,
+                                     abbe_image *image, double *unit, abbe_error *error) {
+  int32_t count = 0;
+  if (exr_get_attribute_count(context, part, &count) != 0) return ABBE_OK;
+  for (int32_t i = 0; i < count; i++) {
+    const exr_attribute_t *a = NULL;
+    if (exr_get_attribute_by_index(context, part, EXR_ATTR_LIST_FILE_ORDER, i, &a) != 0) continue;
+    if (a->type == EXR_ATTR_CHROMATICITIES && strcmp(a->name, "chromaticities") == 0) {
+      const exr_attr_chromaticities_t *c = a->chromaticities;
+      const double xy[8] = {c->red_x,  c->red_y,  c->green_x, c->green_y,
+                            c->blue_x, c->blue_y, c->white_x, c->white_y};
+      memcpy(image->xy, xy, sizeof xy);
+    }
+    ABBE_TRY(name_band(a, s, image, error));
+    if (a->type != EXR_ATTR_STRING || a->name[0] == '\0' || a->string->str == NULL) continue;
+    if (strcmp(a->name, ABBE_EXR_STORAGE_NAME) == 0) continue;
+    if (strcmp(a->name, ABBE_EXR_UNIT_NAME) == 0) {
+      if (read_unit(a->string->str, unit)) continue;
+      return abbe_error_set(error, ABBE_PARSE, "%s: %s is '%.40s'; a power of two is right",
+                            s->path, ABBE_EXR_UNIT_NAME, a->string->str);
+    }
+    if (image->attribute_count == ABBE_IMAGE_MAX_ATTRIBUTES)
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "%s: it has more than %d text attributes, which is as many as can be "
+                            "read",
+                            s->path, ABBE_IMAGE_MAX_ATTRIBUTES);
+    ABBE_TRY(abbe_image_set_attribute(image, a->name, a->string->str, error));
+  }
+  return ABBE_OK;
 }

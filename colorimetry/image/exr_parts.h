@@ -46,4 +46,10 @@ abbe_result abbe_exr_fail_open(const abbe_exr_stream *s, exr_result_t rv, abbe_e
 abbe_result abbe_exr_layout_find(exr_context_t context, const abbe_exr_stream *s,
                                  abbe_exr_layout *out, abbe_error *error);
 
+/* Chromaticities and texts of a part's header, and the wavelengths that channels are called by.
+ * *unit: of what is stored; it stays what it is where nothing is said. ABBE_PARSE for a unit or a
+ * wavelength that is none, ABBE_UNSUPPORTED for too many texts. */
+abbe_result abbe_exr_attributes_read(exr_context_t context, int part, const abbe_exr_stream *s,
+                                     abbe_image *image, double *unit, abbe_error *error);
+
 #endif

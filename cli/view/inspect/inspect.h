@@ -1,15 +1,16 @@
 /* inspect.h: pictures of any program as a window shows them: which numbers, how they look, and what
  * a pixel or a region has.
  *
- * It knows no window and draws nothing. Pictures are read once and stay as they are; of large ones
- * whose file has levels of detail a coarse level is, and of finer ones what is shown is read when
- * it is. What is shown is converted tile by tile, at about the screen's resolution, and kept until
- * the look changes. Internal to cli/view/.
+ * It knows no window and draws nothing. Pictures are read once and stay as they are. Of large ones
+ * whose file has levels of detail a coarse level is read, and of finer ones what is shown when it
+ * is; of large ones in scan lines some lines are read first. What is shown is converted tile by
+ * tile, at about the screen's resolution, and kept until the look changes. Internal to cli/view/.
  */
 #ifndef ABBE_CLI_VIEW_INSPECT_INSPECT_H
 #define ABBE_CLI_VIEW_INSPECT_INSPECT_H
 
 #include "colorimetry/image/display_ocio.h"
+#include "colorimetry/image/exr.h"
 #include "colorimetry/image/picture_space.h"
 #include "colorimetry/plot/chart.h"
 #include "colorimetry/spectral_picture/spectral_channels.h"
@@ -64,13 +65,15 @@ typedef struct abbe_inspect_level {
 
 typedef struct abbe_inspect_picture {
   const char *path;
-  char *own;            /* the path, where it is the picture's; or NULL */
-  size_t serial;        /* of no other picture */
-  bool sent;            /* it is no file: another program sends it */
-  bool changed;         /* since it was shown */
-  size_t width, height; /* of the picture; */
-  size_t coarse;        /* level of it that is in memory, of half the side each; 0: all of it */
-  abbe_image image;     /* that level */
+  char *own;               /* the path, where it is the picture's; or NULL */
+  size_t serial;           /* of no other picture */
+  bool sent;               /* it is no file: another program sends it */
+  bool changed;            /* since it was shown */
+  size_t width, height;    /* of the picture; */
+  size_t coarse;           /* level of it that is in memory, of half the side each; 0: all of it */
+  abbe_image image;        /* that level */
+  abbe_exr_reader *reader; /* of what is not in memory yet; NULL: all that is shown is */
+  double read;             /* share of its scan lines that are; the others are as those above */
   abbe_spectral_channels bands;
   abbe_picture_space space;
   char note[1024]; /* why its R, G, B, or its bands, are no colour; else "" */
@@ -93,8 +96,7 @@ typedef struct abbe_inspect_picture {
   abbe_inspect_level level[ABBE_INSPECT_LEVELS];
 } abbe_inspect_picture;
 
-/* Numbers of a picture with levels that are in memory at most, as long as nothing finer is shown:
- * 64 MiB. */
+/* Numbers of a large picture that are in memory first: 64 MiB. */
 #define ABBE_INSPECT_MOST_NUMBERS ((size_t)1 << 24)
 
 typedef struct abbe_inspect {
@@ -111,6 +113,10 @@ typedef struct abbe_inspect {
  * abbe_avif_read and abbe_spectral_channels_find; ABBE_UNSUPPORTED for other kinds,
  * ABBE_OUT_OF_RANGE for one picture too many. */
 abbe_result abbe_inspect_open(abbe_inspect *inspect, const char *path, abbe_error *error);
+/* Reads for so many seconds what large pictures lack; *whole: they lack nothing. Errors of
+ * abbe_exr_read; that picture stays as it is then. */
+abbe_result abbe_inspect_read_on(abbe_inspect *inspect, double seconds, bool *whole,
+                                 abbe_error *error);
 /* Makes a black one of size: width, height and channels, behind the others. Errors of
  * abbe_image_make and abbe_spectral_channels_find; ABBE_OUT_OF_RANGE as above. */
 abbe_result abbe_inspect_create(abbe_inspect *inspect, const char *name, const size_t size[3],
@@ -190,8 +196,7 @@ typedef struct abbe_inspect_source {
   size_t level, x0, y0;
 } abbe_inspect_source;
 /* Those of a window of the picture, at that level or the next coarser one that there is; what is
- * not in memory is read. Errors of abbe_exr_read_level; ABBE_INVALID_ARGUMENT where the file has
- * become another. */
+ * not in memory is read. Errors of abbe_exr_read_level. */
 abbe_result abbe_inspect_source_take(const abbe_inspect_picture *picture, size_t level,
                                      const size_t window[4], abbe_inspect_source *out,
                                      abbe_error *error);

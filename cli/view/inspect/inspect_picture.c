@@ -1,7 +1,6 @@
 #include "cli/view/inspect/inspect.h"
 
 #include "base/file.h"
-#include "colorimetry/image/exr.h"
 #include "colorimetry/image/picture_file.h"
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/image/rgb_encoding.h"
@@ -43,18 +42,30 @@ static void decode(abbe_image *image) {
   image->transfer = 0;
 }
 
-/* Of a picture whose file has levels the finest that has few enough numbers. */
+/* Of a picture whose file has levels the finest that has few enough numbers; of scan lines as many
+ * as have. */
 static abbe_result read_exr(const char *path, size_t most, abbe_inspect_picture *p,
                             abbe_error *error) {
   abbe_exr_levels l;
-  ABBE_TRY(abbe_exr_find_levels(path, &l, error));
+  ABBE_TRY(abbe_exr_open(path, &p->reader, error));
+  abbe_exr_find_levels(p->reader, &l);
   while (p->coarse + 1 < l.count &&
          (l.width >> p->coarse) * (l.height >> p->coarse) > most / l.channels)
     p->coarse++;
   p->width = l.width;
   p->height = l.height;
-  return p->coarse == 0 ? abbe_exr_read(path, &p->image, error)
-                        : abbe_exr_read_level(path, p->coarse, NULL, &p->image, error);
+  if (p->coarse > 0) return abbe_exr_read_level(p->reader, p->coarse, NULL, &p->image, error);
+  ABBE_TRY(abbe_exr_read_first(p->reader, most, &p->image, error));
+  return abbe_exr_read_on(p->reader, 0, &p->image, &p->read, error);
+}
+
+static bool is_partly_read(const abbe_inspect_picture *p) {
+  return p->reader != NULL && p->coarse == 0;
+}
+
+static void end_reading(abbe_inspect_picture *p) {
+  abbe_exr_close(p->reader);
+  p->reader = NULL;
 }
 
 static abbe_result read_image(const char *path, size_t most, abbe_inspect_picture *p,
@@ -87,11 +98,9 @@ abbe_result abbe_inspect_source_take(const abbe_inspect_picture *p, size_t level
     const size_t most = (k % 2 == 0 ? p->width : p->height) >> level;
     part[k] = window[k] >> level < most ? window[k] >> level : most > 0 ? most - 1 : 0;
   }
-  ABBE_TRY(abbe_exr_read_level(p->path, level, part, &out->own, error));
+  ABBE_TRY(abbe_exr_read_level(p->reader, level, part, &out->own, error));
   *out = (abbe_inspect_source){&out->own, out->own, level, part[0], part[1]};
-  if (out->own.channels == p->image.channels) return ABBE_OK;
-  abbe_image_free(&out->own);
-  return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: it has become another file", p->path);
+  return ABBE_OK;
 }
 
 const float *abbe_inspect_source_pixel(const abbe_inspect_source *s, size_t x, size_t y) {
@@ -137,6 +146,7 @@ static abbe_result rename_bands(abbe_inspect_picture *p, abbe_error *error) {
 static void look_for_odd(abbe_inspect_picture *p) {
   const abbe_image *image = &p->image;
   float most = 65504; /* as abbe_relight_make */
+  p->odd = (abbe_image_odd){0};
   for (size_t i = 0; i < image->width * image->height; i++) {
     bool infinite = false, nan = false;
     for (size_t c = 0; c < image->channels; c++) {
@@ -241,6 +251,7 @@ static abbe_result list_entries(abbe_inspect_picture *p, abbe_error *error) {
 }
 
 static void free_picture(abbe_inspect_picture *p) {
+  end_reading(p);
   abbe_inspect_tiles_free(p);
   abbe_inspect_mix_free(&p->mix);
   abbe_inspect_mix_free(&p->minus);
@@ -275,6 +286,7 @@ static abbe_result end_picture(abbe_inspect *s, abbe_inspect_picture *p, abbe_re
     free_picture(p);
     return result;
   }
+  if (is_partly_read(p) && p->read == 1) end_reading(p);
   look_for_odd(p);
   if (s->count == 1) s->other = 1;
   s->count++;
@@ -287,6 +299,23 @@ abbe_result abbe_inspect_open(abbe_inspect *s, const char *path, abbe_error *err
   abbe_inspect_picture *p = NULL;
   ABBE_TRY(begin_picture(s, path, &p, error));
   return end_picture(s, p, read_image(p->path, most, p, error), error);
+}
+
+abbe_result abbe_inspect_read_on(abbe_inspect *s, double seconds, bool *whole, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  *whole = true;
+  for (size_t i = 0; i < s->count; i++) {
+    abbe_inspect_picture *p = &s->picture[i];
+    if (!*whole || !is_partly_read(p)) continue;
+    const int halves = ilogb(p->read);
+    result = abbe_exr_read_on(p->reader, seconds, &p->image, &p->read, error);
+    *whole = result != ABBE_OK || p->read == 1;
+    if (*whole) end_reading(p);
+    if (*whole) look_for_odd(p);
+    if (*whole || ilogb(p->read) > halves)
+      abbe_inspect_touch(s, i, (const size_t[4]){0, 0, p->width - 1, p->height - 1});
+  }
+  return result;
 }
 
 abbe_result abbe_inspect_create(abbe_inspect *s, const char *name, const size_t size[3],

@@ -318,15 +318,15 @@ TEST(two_pictures_and_their_difference) {
 
 enum { LARGE_W = 300, LARGE_H = 200, TILE = 16 };
 
-/* A picture with levels of detail, of which no more than a coarse one may be in memory. */
-static void open_large(abbe_inspect *s, size_t numbers) {
+/* A picture of so many numbers at first, with levels of detail or in scan lines. */
+static void open_large(abbe_inspect *s, size_t numbers, bool levels) {
   const exr_library_file file = {.data_window = {0, 0, LARGE_W - 1, LARGE_H - 1},
                                  .display_window = {0, 0, LARGE_W - 1, LARGE_H - 1},
                                  .channels = 2,
                                  .name = {"Y", "Z"},
                                  .type = {2, 2},
-                                 .tile = {TILE, TILE},
-                                 .levels = true};
+                                 .tile = {levels ? TILE : 0, levels ? TILE : 0},
+                                 .levels = levels};
   char why[200];
   if (!exr_library_write(path, &file, why, sizeof why)) fail_msg("%s", why);
   s->most_numbers = numbers;
@@ -338,9 +338,9 @@ TEST(of_a_large_picture_what_is_shown_is_read) {
   static const size_t whole[4] = {0, 0, LARGE_W - 1, LARGE_H - 1};
   OWNED(abbe_inspect, all) = {.count = 0};
   OWNED(abbe_inspect, s) = {.count = 0};
-  open_large(&all, 0);
+  open_large(&all, 0, true);
   assert_int_equal(all.picture[0].coarse, 0);
-  open_large(&s, 2 * 80 * 50);
+  open_large(&s, 2 * 80 * 50, true);
   abbe_inspect_picture *p = &s.picture[0];
   assert_int_equal(p->coarse, 2);
   assert_true(p->width == LARGE_W && p->height == LARGE_H);
@@ -367,12 +367,40 @@ TEST(of_a_large_picture_what_is_shown_is_read) {
   assert_int_equal(means.pixels, LARGE_W / 4 * (LARGE_H / 4));
 }
 
+/* Some lines are there at once, each further one as that above it; then all. */
+TEST(lines_of_a_large_picture_are_read_one_after_another) {
+  OWNED(abbe_inspect, all) = {.count = 0};
+  OWNED(abbe_inspect, s) = {.count = 0};
+  static unsigned char out[3][4 * LARGE_W * LARGE_H];
+  bool whole = false;
+  open_large(&all, 0, false);
+  open_large(&s, 2 * LARGE_W * LARGE_H / 4, false);
+  abbe_inspect_picture *p = &s.picture[0];
+  const abbe_image *full = &all.picture[0].image;
+  assert_true(all.picture[0].reader == NULL && p->reader != NULL && p->coarse == 0);
+  assert_near(p->read, 0.25, 0.01);
+  for (size_t y = 0; y < LARGE_H; y++)
+    assert_memory_equal(p->image.data + y * 2 * LARGE_W, full->data + y / 4 * 4 * 2 * LARGE_W,
+                        2 * LARGE_W * sizeof(float));
+  show(&s, 0, "Z", (abbe_inspect_look){.exposure = -5});
+  draw(&s, LARGE_W, LARGE_H, 1, out[0]);
+  while (!whole) OK(abbe_inspect_read_on(&s, 0.01, &whole, &error));
+  assert_true(p->reader == NULL && p->read == 1);
+  assert_memory_equal(p->image.data, full->data, 2 * LARGE_W * LARGE_H * sizeof(float));
+  show(&s, 0, "Z", (abbe_inspect_look){.exposure = -5});
+  draw(&s, LARGE_W, LARGE_H, 1, out[1]);
+  show(&all, 0, "Z", (abbe_inspect_look){.exposure = -5});
+  draw(&all, LARGE_W, LARGE_H, 1, out[2]);
+  assert_memory_equal(out[1], out[2], sizeof out[1]);
+  assert_memory_not_equal(out[0], out[2], sizeof out[0]);
+}
+
 /* All tiles of the finest level, which come first, are made unreadable. */
 TEST(a_large_picture_is_opened_without_its_finest_tiles) {
   OWNED(abbe_inspect, s) = {.count = 0};
   static unsigned char out[4 * LARGE_W * LARGE_H];
   bool whole = false;
-  open_large(&s, 2 * 80 * 50);
+  open_large(&s, 2 * 80 * 50, true);
   abbe_inspect_free(&s);
   FILE *file = fopen(path, "r+b");
   const size_t most = LARGE_W * LARGE_H * 2 * sizeof(float);

@@ -239,6 +239,51 @@ TEST(wavelengths_as_attributes) {
   }
 }
 
+/* In metres or with a unit; what is no number leaves the channel's name, and stays a text. */
+TEST(wavelengths_as_texts) {
+  static const char *const name[] = {"wl0", "wl1", "wl2", "wl3"};
+  static const char *const text[] = {"4.005e-7", "550 nm", "6e-7m", "green"};
+  static const char *const read[] = {"S0.400,500000nm", "S0.550,000000nm", "S0.600,000000nm",
+                                     "wl3"};
+  MADE(abbe_image, image, abbe_image_make(2, 1, 4, name, &image, &error));
+  for (size_t i = 0; i < 4; i++)
+    OK(abbe_image_set_attribute(&image, printed("%s.wavelength", name[i]), text[i], &error));
+  OK(abbe_exr_write(path, &image, &error));
+  MADE(abbe_image, back, abbe_exr_read(path, &back, &error));
+  for (size_t i = 0; i < 4; i++) assert_true(abbe_image_find_channel(&back, read[i]) < 4);
+  assert_string_equal(abbe_image_attribute_text(&back, "wl3.wavelength"), "green");
+  OK(abbe_image_set_attribute(&image, "wl3.wavelength", "550", &error));
+  OK(abbe_exr_write(path, &image, &error));
+  abbe_image none;
+  REFUSED(ABBE_PARSE, "wl3.wavelength is no wavelength", abbe_exr_read(path, &none, &error));
+}
+
+/* Every other chunk first, then those between; until then lines are as those above. */
+TEST(lines_in_passes) {
+  const exr_library_file f = {.channels = 1,
+                              .type = {2},
+                              .name = {"Y"},
+                              .data_window = {0, 0, 36, 69},
+                              .display_window = {0, 0, 36, 69}};
+  char why[300];
+  if (!exr_library_write(path, &f, why, sizeof why)) fail_msg("%s", why);
+  MADE(abbe_image, whole, abbe_exr_read(path, &whole, &error));
+  const size_t row = whole.width * sizeof(float);
+  abbe_exr_reader *reader = NULL;
+  OK(abbe_exr_open(path, &reader, &error));
+  MADE(abbe_image, image,
+       abbe_exr_read_first(reader, whole.width * whole.height / 4, &image, &error));
+  double share = 0;
+  OK(abbe_exr_read_on(reader, 0, &image, &share, &error));
+  assert_near(share, 18.0 / 70, 1e-9);
+  for (size_t y = 0; y < image.height; y++)
+    assert_memory_equal(image.data + y * image.width, whole.data + y / 4 * 4 * image.width, row);
+  OK(abbe_exr_read_on(reader, 60, &image, &share, &error));
+  assert_near(share, 1, 0);
+  assert_memory_equal(image.data, whole.data, row * image.height);
+  abbe_exr_close(reader);
+}
+
 /* Each part has a codec of its own. */
 TEST(a_codec_of_one_part) {
   static const char key[] = "compression\0compression\0\1\0\0"; /* and the size's last byte */
