@@ -1,6 +1,5 @@
 #include "cli/base/command.h"
-#include "cli/base/output.h"
-#include "cli/python_command.h"
+#include "cli/base/progress.h"
 
 #include "base/text.h"
 #include "colorimetry/image/display_ocio.h"

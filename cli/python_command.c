@@ -1,6 +1,4 @@
 #define _GNU_SOURCE /* readlink, setenv */
-#include "cli/python_command.h"
-
 #include "cli/base/command.h"
 
 #include <limits.h>

@@ -3,7 +3,7 @@
 #include "colorimetry/observer.h"
 #include "colorimetry/upsampling.h"
 #include "colorimetry/weights.h"
-#include "gl/plan/examine/spectral_needs.h"
+#include "gl/plan/examine/examine.h"
 #include "spectral/spectrum.h"
 
 #include <math.h>

@@ -151,4 +151,10 @@ int abbe_verbs_run(const abbe_verbs *verbs, int argc, char **argv);
  * where the build installs it, in text[size]; else path. */
 const char *abbe_shipped_find(const char *path, char *text, size_t size);
 
+/* A command that is a part of the Python module abbe: abbe.NAME, run by python3. */
+
+/* Becomes Python with argc words of argv, and returns an exit code where it cannot. The module is
+ * looked for beside the program; $ABBE_PYTHON is taken before Debian's own python3. */
+int abbe_python_command_run(const char *name, int argc, char **argv);
+
 #endif

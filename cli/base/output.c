@@ -1,6 +1,6 @@
 #define _GNU_SOURCE /* fopencookie */
 
-#include "cli/base/output.h"
+#include "cli/base/progress.h"
 
 #include "base/text.h"
 

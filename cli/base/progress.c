@@ -1,7 +1,6 @@
 #include "cli/base/progress.h"
 
 #include "base/clock.h"
-#include "cli/base/output.h"
 
 #include <math.h>
 #include <signal.h>

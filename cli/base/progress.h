@@ -4,6 +4,7 @@
 #define ABBE_CLI_BASE_PROGRESS_H
 
 #include <stdbool.h>
+#include <stdio.h>
 
 typedef struct abbe_progress {
   const char *what;
@@ -25,5 +26,18 @@ const volatile int *abbe_progress_stopped_after(double seconds);
 double abbe_progress_seconds(const abbe_progress *progress);
 /* Clears the bar. */
 void abbe_progress_end(abbe_progress *progress);
+
+/* What the program says, as text that a terminal may show.
+ *
+ * Names and texts of files, of libraries and of the command line may hold what a terminal obeys.
+ * Everything that is written to stdout or stderr, by whomever, becomes printable here
+ * (base/text.h), so that no line of the program needs to think of it. */
+
+/* From now on stdout and stderr are streams that make text printable. Without memory for them they
+ * stay as they are. */
+void abbe_output_begin(void);
+
+/* What lies beneath stdout and stderr, for the program's own control characters. */
+FILE *abbe_output_raw(FILE *stream);
 
 #endif

@@ -4,7 +4,7 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/gem/gem_input.h"
-#include "scenes/cuts/cut_diagram.h"
+#include "scenes/cuts/cut_file.h"
 #include "scenes/cuts/cut_stretch.h"
 
 #include <cjson/cJSON.h>

@@ -4,7 +4,6 @@
 #include "base/maths.h"
 #include "colorimetry/plot/chart.h"
 #include "scenes/cuts/cut_file.h"
-#include "scenes/cuts/cut_solid.h"
 
 #include <stdio.h>
 #include <stdlib.h>

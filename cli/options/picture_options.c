@@ -3,7 +3,6 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "colorimetry/colour_temperature.h"
-#include "colorimetry/screen/glare.h"
 #include "colorimetry/screen/screen_file.h"
 
 #include <math.h>

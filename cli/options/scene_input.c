@@ -6,7 +6,6 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "cli/base/command.h"
-#include "scenes/check/scene_doubts.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/object_motion.h"
 #include "scenes/studio/setting.h"

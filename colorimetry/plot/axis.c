@@ -1,4 +1,4 @@
-#include "colorimetry/plot/axis.h"
+#include "colorimetry/plot/chart_panel.h"
 
 #include "base/number.h"
 

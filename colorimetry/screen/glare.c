@@ -1,4 +1,4 @@
-#include "colorimetry/screen/glare.h"
+#include "colorimetry/screen/screen_file.h"
 
 #include "base/maths.h"
 

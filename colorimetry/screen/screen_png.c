@@ -3,7 +3,6 @@
 #include "base/number.h"
 #include "colorimetry/image/picture_space.h"
 #include "colorimetry/image/png_file.h"
-#include "colorimetry/screen/glare.h"
 #include "colorimetry/screen/screen_file.h"
 
 #include <math.h>

@@ -32,7 +32,7 @@ typedef struct abbe_screen_png_desc {
                                 before they were multiplied by it */
   const char *name;          /* the picture's name, for sentences; NULL: "the picture" */
   int bits;                  /* of abbe_screen_file_write */
-  double glare_deg; /* the eye's glare of a picture seen so many degrees high (glare.h); 0: none */
+  double glare_deg; /* the eye's glare of a picture seen so many degrees high (screen_file.h); 0: none */
   abbe_screen_png_notes *notes; /* filled; may be NULL */
 } abbe_screen_png_desc;
 

@@ -3,7 +3,7 @@
 #include "base/number.h"
 #include "base/yaml/yaml.h"
 #include "gl/accuracy/frame_times.h"
-#include "gl/plan/examine/reach.h"
+#include "gl/plan/examine/examine.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #include "colorimetry/weights.h"
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
-#include "gl/plan/examine/spectral_needs.h"
+#include "gl/plan/examine/examine.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "gl/eye/receivers_pass.h"
 
 #include "base/clock.h"
-#include "gl/plan/examine/light_views.h"
+#include "gl/plan/examine/examine.h"
 
 #include <stdlib.h>
 

@@ -4,7 +4,7 @@
 #include "colorimetry/weights.h"
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
-#include "gl/plan/examine/light_views.h"
+#include "gl/plan/examine/examine.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,12 +1,7 @@
 #include "gl/plan/plan.h"
 
 #include "base/thread/watch.h"
-#include "gl/plan/examine/inner_light.h"
-#include "gl/plan/examine/light_views.h"
-#include "gl/plan/examine/models.h"
-#include "gl/plan/examine/reach.h"
-#include "gl/plan/examine/spectral_needs.h"
-#include "gl/plan/support.h"
+#include "gl/plan/examine/examine.h"
 #include "scenes/lights/environment_lights.h"
 #include "scenes/mesh/mesh.h"
 

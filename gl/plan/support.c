@@ -1,8 +1,7 @@
-#include "gl/plan/support.h"
+#include "gl/plan/examine/examine.h"
 
 #include "base/maths.h"
 #include "colorimetry/weights.h"
-#include "gl/plan/examine/reach.h"
 
 #include <math.h>
 

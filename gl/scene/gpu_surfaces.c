@@ -2,7 +2,7 @@
 
 #include "colorimetry/reflectance/reflected_light.h"
 #include "gl/device/float4.h"
-#include "gl/plan/examine/models.h"
+#include "gl/plan/examine/examine.h"
 #include "gl/scene/gpu_scene.h"
 
 #include <stdlib.h>

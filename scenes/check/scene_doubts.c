@@ -1,4 +1,4 @@
-#include "scenes/check/scene_doubts.h"
+#include "scenes/import/scene_file.h"
 
 #include "base/maths.h"
 #include "base/number.h"

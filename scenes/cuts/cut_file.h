@@ -3,9 +3,11 @@
 #ifndef ABBE_SCENES_CUTS_CUT_FILE_H
 #define ABBE_SCENES_CUTS_CUT_FILE_H
 
+#include "base/error.h"
 #include "base/report.h"
 #include "scenes/cuts/cut.h"
 #include "scenes/cuts/cut_polyhedron.h"
+#include "spectral/materials/material.h"
 
 #include <stdio.h>
 
@@ -75,5 +77,52 @@ abbe_result abbe_cut_gem_parse(const char *data, size_t size, const char *name, 
  * format does not hold: texts beyond 255 bytes. */
 abbe_result abbe_cut_gem_write(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron, FILE *to,
                                abbe_report *report, abbe_error *error);
+
+/* A design on a sheet, as cutters work from it.
+ *
+ * The crown from above, the pavilion from below, two profiles, the wheel of indices around both,
+ * names on the facets, the proportions, and a table of the tiers. Drawn by cairo. Sheets are as
+ * wide as A4 and as long as the table needs, A4 at the least. */
+
+/* Pixels of a PNG per point (1/72 inch). */
+#define ABBE_CUT_DIAGRAM_PIXELS 2
+
+/* Draws the cut's polyhedron. The format is the name's ending: .pdf, .svg or .png. note, under the
+ * proportions, may be NULL. Tiers of the pavilion below the critical angle of index n are marked,
+ * 0: none. ABBE_INVALID_ARGUMENT for another ending, ABBE_IO, ABBE_NO_MEMORY. */
+abbe_result abbe_cut_diagram_write(const char *path, const abbe_cut *cut,
+                                   const abbe_cut_polyhedron *polyhedron, const char *note,
+                                   double n, abbe_error *error);
+
+/* The stone of a design as a solid for other programs: STL, OBJ, glTF.
+ *
+ * Facets stay flat: no corner is shared between two of them where a format has normals. Lengths are
+ * metres in glTF, y up, and millimetres in STL and OBJ, z up. */
+
+/* X(code, ending): .gltf is not written, for it is two files. */
+#define ABBE_CUT_SOLIDS(X)                                                                         \
+  X(STL, ".stl")                                                                                   \
+  X(OBJ, ".obj")                                                                                   \
+  X(GLB, ".glb")
+
+typedef enum abbe_cut_solid_format {
+#define ABBE_CUT_SOLID_ENUM(code, ending) ABBE_CUT_SOLID_##code,
+  ABBE_CUT_SOLIDS(ABBE_CUT_SOLID_ENUM)
+#undef ABBE_CUT_SOLID_ENUM
+      ABBE_CUT_SOLID_COUNT
+} abbe_cut_solid_format;
+
+/* The format of a path's ending, or ABBE_CUT_SOLID_COUNT. */
+abbe_cut_solid_format abbe_cut_solid_format_of(const char *path);
+
+/* Writes the cut's polyhedron; scale is metres a unit of the design, above 0. STL is binary. OBJ
+ * has a group a facet, of its name, and polygons. In glTF the stone has KHR_materials_ior,
+ * transmission, volume and dispersion ([glTFDispersion]: 20 over
+ * V_d), colours by the transmittance of the stone's own width; material NULL: an index of 1.5
+ * without dispersion. ABBE_OUT_OF_RANGE where the material does not cover the visible,
+ * ABBE_NO_MEMORY, ABBE_IO. */
+abbe_result abbe_cut_solid_write(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
+                                 double scale, const abbe_material *material,
+                                 abbe_cut_solid_format format, FILE *to, abbe_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "scenes/cuts/cut_solid.h"
+#include "scenes/cuts/cut_file.h"
 
 #include "base/file.h"
 #include "base/number.h"

@@ -1,4 +1,4 @@
-#include "scenes/environment/environment_picture.h"
+#include "scenes/environment/environment_source.h"
 
 #include "base/maths.h"
 #include "colorimetry/image/picture_file.h"

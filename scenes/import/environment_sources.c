@@ -2,7 +2,7 @@
 
 #include "colorimetry/image/exr.h"
 #include "colorimetry/upsampling.h"
-#include "scenes/environment/environment_picture.h"
+#include "scenes/environment/environment_source.h"
 #include "scenes/import/scene_reading.h"
 #include "scenes/import/scene_value.h"
 

@@ -3,7 +3,7 @@
 
 #include "base/thread/watch.h"
 #include "scenes/mesh/bvh.h"
-#include "scenes/mesh/shell_search.h"
+#include "scenes/mesh/shells.h"
 
 #include <math.h>
 #include <stdlib.h>

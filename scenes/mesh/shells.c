@@ -3,7 +3,6 @@
 #include "base/maths.h"
 #include "base/thread/watch.h"
 #include "scenes/mesh/bvh.h"
-#include "scenes/mesh/shell_search.h"
 
 #include <math.h>
 #include <stdbool.h>

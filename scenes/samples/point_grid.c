@@ -1,4 +1,4 @@
-#include "scenes/samples/point_grid.h"
+#include "scenes/samples/surface_samples.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "scenes/samples/sample_tree.h"
+#include "scenes/samples/surface_samples.h"
 
 #include "base/maths.h"
 

@@ -1,7 +1,6 @@
 #include "scenes/samples/surface_samples.h"
 
 #include "base/maths.h"
-#include "scenes/samples/point_grid.h"
 
 #include <math.h>
 #include <stdlib.h>

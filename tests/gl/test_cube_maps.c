@@ -4,7 +4,7 @@
 #include "tests/validation/trace_scene.h"
 
 #include "base/maths.h"
-#include "gl/plan/examine/light_views.h"
+#include "gl/plan/examine/examine.h"
 
 typedef struct place {
   double at[3], radius;

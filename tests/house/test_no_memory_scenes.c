@@ -12,7 +12,7 @@
 #include "colorimetry/weights.h"
 #include "gl/accuracy/preset.h"
 #include "gl/plan/plan.h"
-#include "scenes/environment/environment_picture.h"
+#include "scenes/environment/environment_source.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/mesh/mesh.h"
 #include "scenes/shapes/shape.h"

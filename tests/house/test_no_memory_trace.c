@@ -7,7 +7,7 @@
 #include "scenes/export/pov_file.h"
 #include "scenes/import/scene_file.h"
 #include "validation/lab/known/known_answers.h"
-#include "validation/lab/known/rings.h"
+#include "validation/lab/known/known_light.h"
 #include "validation/measure/compare.h"
 #include "validation/measure/file_comparison.h"
 #include "validation/trace/denoise.h"

@@ -1,6 +1,6 @@
 #include "tests/scenes/scene_text.h"
 
-#include "scenes/check/scene_doubts.h"
+#include "scenes/import/scene_file.h"
 
 #define EYE CAMERA
 #define STONE(more) "- {name: stone, shape: brilliant, diameter: 0.05, " more ", material: dense}\n"

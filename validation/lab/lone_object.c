@@ -1,4 +1,4 @@
-#include "validation/lab/lone_object.h"
+#include "validation/lab/exit_fill.h"
 
 #include "base/maths.h"
 #include "validation/lab/volume_sums.h"

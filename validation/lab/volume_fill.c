@@ -7,7 +7,6 @@
 #include "scenes/volume/half.h"
 #include "spectral/wavelengths.h"
 #include "validation/lab/exit_fill.h"
-#include "validation/lab/lone_object.h"
 #include "validation/lab/volume_sums.h"
 #include "validation/trace/transport/random.h"
 #include "validation/trace/transport/spectral_sampling.h"

@@ -29,7 +29,7 @@ typedef struct abbe_volume_sums {
 /* A cell with less of its space left than that holds nothing. */
 #define ABBE_VOLUME_SUMS_LEAST_SPACE 0.02f
 
-/* share[cells]: of each that is empty (lone_object.h), NULL: all; not read of a printed one, which
+/* share[cells]: of each that is empty (exit_fill.h), NULL: all; not read of a printed one, which
  * reads the unit direction of the beam instead. The region outlives it. ABBE_NO_MEMORY. */
 abbe_result abbe_volume_sums_make(const abbe_volume_region *region, bool printed,
                                   const float *share, const double beam[3], size_t threads,

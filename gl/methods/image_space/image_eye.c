@@ -1,4 +1,4 @@
-#include "gl/methods/image_space/image_eye.h"
+#include "gl/methods/image_space/method.h"
 
 #include "scenes/view/estimator.h"
 

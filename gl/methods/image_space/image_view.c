@@ -1,4 +1,4 @@
-#include "gl/methods/image_space/image_view.h"
+#include "gl/methods/image_space/image_places.h"
 
 #include "colorimetry/weights.h"
 #include "gl/caustics/spectral_map.h"

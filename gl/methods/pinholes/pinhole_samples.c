@@ -3,7 +3,6 @@
 #include "base/maths.h"
 #include "gl/device/float4.h"
 #include "gl/scene/spectra/camera_bands.h"
-#include "scenes/samples/sample_tree.h"
 #include "scenes/samples/surface_samples.h"
 
 #include <math.h>

@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Rows of four floats: of each sample, and of each node of their tree (sample_tree.h). */
+/* Rows of four floats: of each sample, and of each node of their tree (surface_samples.h). */
 enum { ABBE_PINHOLE_ROWS = 4, ABBE_PINHOLE_NODE_ROWS = 3 };
 
 typedef struct abbe_pinhole_samples {

@@ -1,4 +1,4 @@
-// The tree of pinholes (scenes/samples/sample_tree.h), as a texel goes down in it.
+// The tree of pinholes (scenes/samples/surface_samples.h), as a texel goes down in it.
 uniform samplerBuffer pinhole_nodes;  // rows as gl/methods/pinholes/pinhole_samples.h has them
 uniform int node_count;
 uniform float cluster_share;  // share of a hemisphere's light that a cluster may send at the most; 0: there are none

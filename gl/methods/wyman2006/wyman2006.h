@@ -24,7 +24,7 @@ typedef struct abbe_wyman_photons {
   GLuint places, incident; /* places for the wavelength that was run last; wyman_photons.frag */
 } abbe_wyman_photons;
 
-/* definitions: of image_view.h. */
+/* definitions: of image_places.h. */
 abbe_result abbe_wyman_photons_make(const abbe_gpu_scene *scene, const abbe_image_places *light,
                                     const abbe_shader_variant *variant, const char *definitions,
                                     abbe_wyman_photons *out, abbe_error *error);

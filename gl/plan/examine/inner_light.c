@@ -1,10 +1,8 @@
-#include "gl/plan/examine/inner_light.h"
+#include "gl/plan/examine/examine.h"
 
 #include "base/maths.h"
 #include "base/number.h"
 #include "base/thread/watch.h"
-#include "gl/plan/examine/reach.h"
-#include "gl/plan/examine/spectral_needs.h"
 #include "scenes/geometry/digest.h"
 #include "spectral/optics.h"
 

@@ -1,7 +1,6 @@
-#include "gl/plan/examine/light_views.h"
+#include "gl/plan/examine/examine.h"
 
 #include "base/maths.h"
-#include "gl/plan/examine/reach.h"
 
 #include <math.h>
 #include <string.h>

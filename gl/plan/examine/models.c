@@ -1,9 +1,7 @@
-#include "gl/plan/examine/models.h"
+#include "gl/plan/examine/examine.h"
 
 #include "base/maths.h"
 #include "colorimetry/weights.h"
-#include "gl/plan/examine/light_views.h"
-#include "gl/plan/examine/reach.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,6 @@
-#include "gl/plan/examine/models.h"
+#include "gl/plan/examine/examine.h"
 
 #include "base/maths.h"
-#include "gl/plan/examine/light_views.h"
 #include "scenes/view/view.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "gl/plan/examine/reach.h"
+#include "gl/plan/examine/examine.h"
 
 #include "base/maths.h"
 #include "scenes/view/view.h"

@@ -1,9 +1,7 @@
-#include "gl/plan/examine/models.h"
+#include "gl/plan/examine/examine.h"
 
 #include "base/maths.h"
 
-#include "gl/plan/examine/reach.h"
-#include "gl/plan/examine/spectral_needs.h"
 #include "scenes/geometry/digest.h"
 
 #include <math.h>

@@ -1,10 +1,9 @@
-#include "gl/plan/examine/spectral_needs.h"
+#include "gl/plan/examine/examine.h"
 
 #include "base/maths.h"
 #include "base/number.h"
 #include "colorimetry/pleochroism.h"
 #include "colorimetry/weights.h"
-#include "gl/plan/examine/reach.h"
 #include "spectral/biaxial.h"
 #include "spectral/film.h"
 #include "spectral/optics.h"

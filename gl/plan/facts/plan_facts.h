@@ -109,7 +109,7 @@ typedef struct abbe_plan_entry {
 /* A light, or a face of the cube around one whose refractors do not fit one view. */
 typedef struct abbe_light_view {
   size_t light; /* the scene's */
-  int face; /* that it looks through (gl/plan/examine/light_views.h); -1: it is no part of a cube */
+  int face; /* that it looks through (gl/plan/examine/examine.h); -1: it is no part of a cube */
   unsigned faces; /* whose light it carries, a bit each: its own; the first of a cube also has all
                      those through which no light reaches a refractor; without a cube, all */
 } abbe_light_view;
@@ -124,7 +124,7 @@ typedef struct abbe_plan_haze {
   double scatters[ABBE_PLAN_HAZE_BANDS], takes[ABBE_PLAN_HAZE_BANDS];
 } abbe_plan_haze;
 
-/* What keeps light inside the plan's one convex solid (gl/plan/examine/inner_light.h): exits, the
+/* What keeps light inside the plan's one convex solid (gl/plan/examine/examine.h): exits, the
  * share at which paths end, and what is inside still then. */
 typedef struct abbe_plan_inside {
   uint64_t of; /* a digest of what it was found from; 0: it was not looked for */
@@ -227,7 +227,7 @@ typedef struct abbe_plan {
   bool page_charts; /* pinholes light receivers that are meshes: by their charts */
   bool fills;       /* light is laid between wavelengths */
   bool edges;       /* some refractor has facets: light ends at edges, and splats are cut finer */
-  size_t tints;     /* hits keep how much of so many stuffs their path passed (spectral_needs.h) */
+  size_t tints;     /* hits keep how much of so many stuffs their path passed (examine.h) */
   bool band_parts;  /* attenuation or reflectance varies: bands have parts that are attenuated alike
                      */
   bool draw_back;   /* views show the back of refractors, too */

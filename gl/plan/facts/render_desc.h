@@ -70,7 +70,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 #define ABBE_PLAN_EXITS 8
 #define ABBE_PLAN_LAYER_EXITS 4 /* where a refractor is known by its layers */
 #define ABBE_PLAN_SHARE 0.01
-/* As far as they go where a convex solid keeps light inside (gl/plan/examine/inner_light.h). */
+/* As far as they go where a convex solid keeps light inside (gl/plan/examine/examine.h). */
 #define ABBE_PLAN_MOST_EXITS 24
 #define ABBE_PLAN_LOW_SHARE 0.005
 /* Exits of the camera's rays through exact surfaces, the share of one solid alone; what light is

@@ -1,4 +1,4 @@
-#include "gl/plan/examine/models.h"
+#include "gl/plan/examine/examine.h"
 #include "gl/scene/spectra/camera_bands.h"
 
 #include <math.h>

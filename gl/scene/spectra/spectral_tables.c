@@ -1,7 +1,7 @@
 #include "gl/scene/spectra/spectral_tables.h"
 
 #include "gl/device/float4.h"
-#include "gl/plan/examine/spectral_needs.h"
+#include "gl/plan/examine/examine.h"
 #include "gl/scene/spectra/band_parts.h"
 #include "spectral/optics.h"
 

@@ -47,7 +47,7 @@ const abbe_material *abbe_mirror_nodes_laid_by(const abbe_scene *scene, const ab
                                                size_t i);
 
 /* What refractors and mirrors take of the bands of photons' wavelengths, by what a path passed of
- * them (gl/plan/examine/spectral_needs.h). */
+ * them (gl/plan/examine/examine.h). */
 
 enum { ABBE_TINT_TEXELS = 2 };
 

@@ -1,5 +1,5 @@
 // TINTS: what takes light by wavelength tints it. A photon's path keeps how much of each stuff it passed, of so many
-// stuffs, and so does its hit: attenuation at all wavelengths follows (gl/plan/examine/spectral_needs.h).
+// stuffs, and so does its hit: attenuation at all wavelengths follows (gl/plan/examine/examine.h).
 #ifdef TINTS
 struct Tints {
   float amount[TINTS];

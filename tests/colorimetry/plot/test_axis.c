@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "colorimetry/plot/axis.h"
+#include "colorimetry/plot/chart_panel.h"
 
 static void check_labels(abbe_axis axis, size_t wanted, const char *labels, int wanted_exponent) {
   abbe_axis_tick tick[ABBE_AXIS_MAX_TICKS];

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "base/maths.h"
-#include "colorimetry/screen/glare.h"
+#include "colorimetry/screen/screen_file.h"
 
 #include <time.h>
 

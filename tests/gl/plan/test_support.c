@@ -1,7 +1,7 @@
 /* What the renderer does not model is refused by name. */
 #include "tests/gl/plan/planned.h"
 
-#include "gl/plan/support.h"
+#include "gl/plan/examine/examine.h"
 
 TEST(the_thesis_refuses_disks) {
   const abbe_render_desc thesis = {.profile = ABBE_PROFILE_THESIS};

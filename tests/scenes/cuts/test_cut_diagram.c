@@ -1,5 +1,5 @@
 /* Sheets to cut from: all that a cutter reads is on them, in each format, or nothing is. */
-#include "scenes/cuts/cut_diagram.h"
+#include "scenes/cuts/cut_file.h"
 
 #include "base/file.h"
 #include "tests/fontconfig.h"

@@ -1,7 +1,7 @@
 /* Stones as solids for other programs: what is written reads back with its volume and place, in
  * metres or millimetres as the format has them; glTF's extensions by structure.
  */
-#include "scenes/cuts/cut_solid.h"
+#include "scenes/cuts/cut_file.h"
 
 #include "base/file.h"
 #include "scenes/mesh/mesh.h"

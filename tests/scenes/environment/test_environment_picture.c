@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/rgb_space.h"
-#include "scenes/environment/environment_picture.h"
+#include "scenes/environment/environment_source.h"
 
 #include <sys/stat.h>
 #include <unistd.h>

@@ -1,7 +1,6 @@
 /* Time in a scene file: keyframes, water at its instant, and what is wrong with either. */
 #include "tests/check.h"
 
-#include "scenes/check/scene_doubts.h"
 #include "scenes/export/scene_export.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/shapes/water.h"

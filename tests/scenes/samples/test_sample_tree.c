@@ -3,8 +3,7 @@
 #include "tests/check.h"
 
 #include "base/maths.h"
-#include "scenes/samples/point_grid.h"
-#include "scenes/samples/sample_tree.h"
+#include "scenes/samples/surface_samples.h"
 #include "scenes/shapes/shape.h"
 #include "tests/random.h"
 

@@ -3,7 +3,6 @@
 #include "tests/validation/trace_scene.h"
 
 #include "validation/lab/exit_fill.h"
-#include "validation/lab/lone_object.h"
 
 #define PLATE(material)                                                                            \
   CAMERA SUN FLOOR "- {name: plate, shape: box, size: [0.2, 0.2, 0.02], material: " material       \

@@ -7,7 +7,7 @@
 #include "scenes/volume/half.h"
 #include "tests/scenes/scene_text.h"
 #include "tests/validation/lab/filled_volume.h"
-#include "validation/lab/lone_object.h"
+#include "validation/lab/exit_fill.h"
 
 #define PLATE(material)                                                                            \
   CAMERA SUN FLOOR "- {name: plate, shape: box, size: [0.2, 0.2, 0.02], material: " material       \

@@ -1,4 +1,4 @@
-#include "validation/lab/known/rings.h"
+#include "validation/lab/known/known_light.h"
 
 #include "base/maths.h"
 

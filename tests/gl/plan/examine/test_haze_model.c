@@ -1,8 +1,7 @@
 /* What the plan makes of media that scatter, and what it says that it leaves out. */
 #include "tests/check.h"
 
-#include "gl/plan/examine/models.h"
-#include "gl/plan/examine/spectral_needs.h"
+#include "gl/plan/examine/examine.h"
 #include "tests/gl/plan/planned.h"
 #include "tests/scenes/scene_text.h"
 

@@ -2,7 +2,7 @@
 #include "tests/gl/frame.h"
 
 #include "base/maths.h"
-#include "gl/plan/examine/inner_light.h"
+#include "gl/plan/examine/examine.h"
 #include "gl/plan/plan.h"
 
 static const double share_of_nothing = 1e-12;

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "base/maths.h"
-#include "gl/plan/examine/light_views.h"
+#include "gl/plan/examine/examine.h"
 #include "gl/plan/plan.h"
 #include "tests/gl/plan/planned.h"
 #include "tests/random.h"

@@ -3,7 +3,7 @@
 #include "tests/gl/frame.h"
 #include "tests/random.h"
 
-#include "gl/plan/examine/light_views.h"
+#include "gl/plan/examine/examine.h"
 #include "gl/renderer_state.h"
 
 enum { WIDTH = 320, HEIGHT = 200, PLACES = 4000 };

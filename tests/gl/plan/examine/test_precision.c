@@ -1,7 +1,7 @@
 /* What single precision or the photon grid would lose is refused, with what would be right. */
 #include "tests/scenes/scene_text.h"
 
-#include "gl/plan/examine/models.h"
+#include "gl/plan/examine/examine.h"
 #include "gl/plan/plan.h"
 
 static abbe_result check(const char *text, size_t photons, abbe_error *error) {

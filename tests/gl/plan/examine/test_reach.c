@@ -2,7 +2,7 @@
 #include "tests/random.h"
 #include "tests/scenes/scene_text.h"
 
-#include "gl/plan/examine/reach.h"
+#include "gl/plan/examine/examine.h"
 
 static abbe_object box(double x, double y, double z, double half) {
   abbe_object object = {.min = {x - half, y - half, z - half},

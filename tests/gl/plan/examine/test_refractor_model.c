@@ -1,7 +1,7 @@
 /* Which model follows light through a refractor, which serve when asked for, and what is noted. */
 #include "tests/gl/plan/planned.h"
 
-#include "gl/plan/examine/models.h"
+#include "gl/plan/examine/examine.h"
 #include "scenes/shapes/shape.h"
 
 /* What is asked for is taken where it can serve, and refused by name where it cannot. */

@@ -1,7 +1,7 @@
 /* Indices that are not known are refused, those that are extrapolated noted. */
 #include "tests/gl/plan/planned.h"
 
-#include "gl/plan/examine/spectral_needs.h"
+#include "gl/plan/examine/examine.h"
 
 TEST(an_index_that_is_not_known_is_refused_or_noted) {
   refuse_plan(CAMERA POINT_LIGHT FLOOR BALL("narrow"), NULL, ABBE_OUT_OF_RANGE, "narrow");

@@ -1,7 +1,7 @@
 /* What is evaluated over the spectrum once for all passes, and again where a material changes. */
 #include "tests/check.h"
 
-#include "gl/plan/examine/spectral_needs.h"
+#include "gl/plan/examine/examine.h"
 #include "gl/scene/spectra/spectral_tables.h"
 #include "spectral/formats/material_import.h"
 #include "spectral/optics.h"

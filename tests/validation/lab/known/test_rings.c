@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "base/maths.h"
-#include "validation/lab/known/rings.h"
+#include "validation/lab/known/known_light.h"
 
 enum { SIDE = 96, RINGS = 5, RADII = (RINGS + 1) * (ABBE_RINGS_STEPS + 1) };
 
