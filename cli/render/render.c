@@ -328,6 +328,7 @@ static abbe_result choose_picture(request *q, const abbe_scene *scene, abbe_erro
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "--tool %s: %s is for the renderer alone; leave one of the two out",
                           abbe_picture_tool_name((abbe_picture_tool)o->tool), own);
+  if (o->tool > 0) ABBE_TRY(abbe_scene_input_check_alpha(scene, error));
   q->may_trace = own == NULL && o->tool < 0;
   if (!q->may_trace) r.tool[own != NULL ? ABBE_PICTURE_RENDER : (abbe_picture_tool)o->tool] = true;
   abbe_result result = abbe_picture_choose(&r, scene, &q->picture, error);

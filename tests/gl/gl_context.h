@@ -6,6 +6,8 @@
 
 #include "gl/device/context.h"
 
+HOLDS(abbe_context);
+
 static abbe_context *context;
 
 static inline void make_context(void) {

@@ -4,7 +4,7 @@
 #include "colorimetry/spectral_picture/relight.h"
 #include "colorimetry/weights.h"
 #include "gl/band_picture.h"
-#include "validation/trace/tracer/tracer.h"
+#include "tests/validation/trace_scene.h"
 
 enum { SIDE = 48, BANDS = 10 };
 
@@ -97,13 +97,9 @@ TEST(cards_in_bands) {
 }
 
 static void trace_bands(const abbe_scene *scene, int passes, abbe_image *out) {
-  abbe_tracer *tracer = NULL;
   const abbe_trace_desc desc = {
       .width = SIDE, .height = SIDE, .bands = BANDS, .no_map = true, .threads = 2};
-  OK(abbe_tracer_make(scene, &desc, &tracer, &error));
-  for (int i = 0; i < passes; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
-  OK(abbe_tracer_picture(tracer, out, &error));
-  abbe_tracer_free(tracer);
+  *out = traced_picture(scene, &desc, passes);
 }
 
 /* A band's sum over the traced one's, and the root mean square of what they are apart by, over the

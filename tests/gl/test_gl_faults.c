@@ -11,6 +11,9 @@
 
 #include <unistd.h>
 
+HOLDS(abbe_context);
+HOLDS(abbe_renderer);
+
 static const char *hidden; /* a function that is not there */
 static GLenum lowered;     /* a limit that is `low` */
 static GLint low;
@@ -150,10 +153,9 @@ TEST(versions_and_limits) {
 }
 
 static void make_described(abbe_context_backend backend, const char *name) {
-  abbe_context *context = NULL;
+  HELD(abbe_context, context) = NULL;
   OK(abbe_context_make(backend, &context, &error));
   assert_int_equal(strncmp(abbe_context_description(context), name, strlen(name)), 0);
-  abbe_context_free(context);
 }
 
 /* A GPU is taken where one works, whichever it is; the CPU where none does. */
@@ -217,11 +219,10 @@ TEST(a_gpu_that_is_not_taken_is_told_of_once) {
 }
 
 TEST(a_driver_without_a_name) {
-  abbe_context *context = NULL;
+  HELD(abbe_context, context) = NULL;
   mute = true;
   OK(abbe_context_make(ABBE_CONTEXT_CPU, &context, &error));
   assert_contains(abbe_context_description(context), "unnamed");
-  abbe_context_free(context);
 }
 
 static void make_gem(abbe_context **context, abbe_renderer **renderer, abbe_result expected,
@@ -235,14 +236,13 @@ static void make_gem(abbe_context **context, abbe_renderer **renderer, abbe_resu
 }
 
 TEST(shaders_that_do_not_compile) {
-  abbe_context *context = NULL;
+  HELD(abbe_context, context) = NULL;
   abbe_renderer *renderer = NULL;
   abbe_error error = {0};
   breaks = true;
   make_gem(&context, &renderer, ABBE_GL, &error);
   assert_null(renderer);
   assert_contains(error.text, "does not compile");
-  abbe_context_free(context);
 }
 
 /* Only llvmpipe's shaders are known to reach beyond what it says. */
@@ -273,13 +273,11 @@ static bool lose(void *user, double done) {
 
 /* The frame ends with the driver's name and a way out, and what is freed then is freed. */
 TEST(a_device_lost_in_a_frame) {
-  abbe_context *context = NULL;
-  abbe_renderer *renderer = NULL;
+  HELD(abbe_context, context) = NULL;
+  HELD(abbe_renderer, renderer) = NULL;
   abbe_error why = {0};
   make_gem(&context, &renderer, ABBE_OK, &why);
   REFUSED(ABBE_GL, "device was lost in", abbe_renderer_frame(renderer, lose, NULL, NULL, &error));
   assert_contains(last_error.text, "(cpu: llvmpipe");
   assert_contains(last_error.text, "--backend cpu");
-  abbe_renderer_free(renderer);
-  abbe_context_free(context);
 }

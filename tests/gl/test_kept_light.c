@@ -55,10 +55,9 @@ TEST(another_cone_is_followed_anew) {
     const abbe_statistics s = draw_frame(renderer);
     assert_false(s.kept[ABBE_PASS_PHOTONS]);
     kept = picture_of(renderer);
-    abbe_renderer *other = drawn_renderer(&scene, &tiny);
+    HELD(abbe_renderer, other) = drawn_renderer(&scene, &tiny);
     anew = picture_of(other);
     assert_same_pixels(&kept, &anew);
-    abbe_renderer_free(other);
     abbe_image_free(&kept);
     abbe_image_free(&anew);
   }

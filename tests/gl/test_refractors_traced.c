@@ -316,14 +316,10 @@ static double tints(const abbe_image *a, const abbe_image *b) {
   return sum;
 }
 
-static abbe_image traced_picture(const abbe_scene *scene, uint32_t seed) {
-  abbe_image image;
-  HELD(abbe_tracer, tracer) = make_tracer(
-      scene, &(abbe_trace_desc){
-                 .no_map = true, .width = SIDE, .height = SIDE, .photons = 1, .seed = seed});
-  run_passes(tracer, 24);
-  OK(abbe_tracer_picture(tracer, &image, &error));
-  return image;
+static abbe_image traced_by(const abbe_scene *scene, uint32_t seed) {
+  const abbe_trace_desc desc = {
+      .no_map = true, .width = SIDE, .height = SIDE, .photons = 1, .seed = seed};
+  return traced_picture(scene, &desc, 24);
 }
 
 /* Noise of two traces knows nothing of each other, nor of what is drawn. */
@@ -334,7 +330,7 @@ static void check_tints(const char *text) {
   abbe_renderer *renderer = drawn_renderer(&scene, &desc);
   OWNED(abbe_image, drawn) = picture_of(renderer);
   abbe_renderer_free(renderer);
-  OWNED(abbe_image, one) = traced_picture(&scene, 1), other = traced_picture(&scene, 2);
+  OWNED(abbe_image, one) = traced_by(&scene, 1), other = traced_by(&scene, 2);
   const double traced = tints(&one, &other), own = tints(&drawn, &drawn);
   const double shared = 0.5 * (tints(&drawn, &one) + tints(&drawn, &other));
   print_message("of the tracer's tints %.3f are drawn, of what is drawn %.3f is traced\n",

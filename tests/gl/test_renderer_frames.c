@@ -159,7 +159,7 @@ TEST(a_map_takes_a_given_layout) {
 
 TEST(what_is_not_there_is_refused) {
   abbe_image map = {0};
-  abbe_renderer *renderer = NULL;
+  HELD(abbe_renderer, renderer) = NULL;
   const abbe_render_desc huge = {.photons = ABBE_RENDER_MAX_PHOTONS + 1};
   OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR);
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_renderer_make(context, &scene, &huge, &renderer, &error));
@@ -169,7 +169,6 @@ TEST(what_is_not_there_is_refused) {
   REFUSED(ABBE_INVALID_ARGUMENT, "no spectral map",
           abbe_renderer_read_map(renderer, 0, true, &map, &error));
   assert_null(map.data);
-  abbe_renderer_free(renderer);
   abbe_renderer_free(NULL);
 }
 

@@ -43,13 +43,11 @@ static void taken_free(taken *t) {
 }
 
 static void take_alone(int scene, taken *out) {
-  abbe_context *own = make();
-  abbe_renderer *renderer = make_on(own, scene);
+  HELD(abbe_context, own) = make();
+  HELD(abbe_renderer, renderer) = make_on(own, scene);
   draw_frame(renderer);
   take(renderer, out);
   assert_true(image_max(&out->picture, 1) > 0 && image_max(&out->map, 1) > 0);
-  abbe_renderer_free(renderer);
-  abbe_context_free(own);
 }
 
 static void draw_alone(void) {
@@ -98,14 +96,13 @@ TEST(two_do_not_meet) {
 
 TEST(two_renderers_on_one_context) {
   abbe_renderer *renderer[2];
-  abbe_context *both = make();
+  HELD(abbe_context, both) = make();
   for (int i = 0; i < 2; i++) renderer[i] = make_on(both, i);
   for (int k = 0; k < 4; k++) assert_draws(renderer[k & 1], &alone[k & 1], true);
   for (int i = 0; i < 2; i++) assert_draws(renderer[i], &alone[i], false);
   abbe_renderer_free(renderer[0]);
   assert_draws(renderer[1], &alone[1], true);
   abbe_renderer_free(renderer[1]);
-  abbe_context_free(both);
 }
 
 /* A context that is the caller's. */
@@ -273,15 +270,13 @@ TEST(what_is_compiled_ahead_is_what_the_camera_needs) {
 /* Beside one that compiles ahead for it, the light and the picture are the same; and it may end at
  * any time. */
 TEST(one_compiles_ahead_of_another) {
-  abbe_context *on = make();
+  HELD(abbe_context, on) = make();
   for (int i = 0; i < SCENES; i++) {
-    abbe_renderer *renderer = make_on(on, i);
+    HELD(abbe_renderer, renderer) = make_on(on, i);
     abbe_renderer_begin_ahead(renderer, &scenes[i]);
     assert_non_null(renderer->ahead);
     assert_draws(renderer, &alone[i], true);
     assert_null(renderer->ahead);
     abbe_renderer_begin_ahead(renderer, &scenes[i]);
-    abbe_renderer_free(renderer);
   }
-  abbe_context_free(on);
 }

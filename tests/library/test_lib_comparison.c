@@ -3,6 +3,7 @@
 
 #include "library/lib_comparison.h"
 
+HOLDS(abbe_lib_comparison);
 HOLDS(abbe_lib_picture);
 
 enum { SIDE = 16 };
@@ -23,7 +24,7 @@ static double value_of(const abbe_lib_comparison *c, const char *metric) {
 }
 
 TEST(a_factor_is_found) {
-  abbe_lib_picture *a = ramp(1);
+  HELD(abbe_lib_picture, a) = ramp(1);
   HELD(abbe_lib_picture, b) = ramp(2);
   abbe_lib_comparison *c = NULL;
   OK(abbe_lib_comparison_make(a, a, NULL, NULL, 0, &c, &error));
@@ -42,12 +43,11 @@ TEST(a_factor_is_found) {
   assert_near(value_of(c, "relative_rmse"), 0, 1e-6);
   assert_near(value_of(c, "ssim"), 1, 1e-6);
   abbe_lib_comparison_free(c);
-  abbe_lib_picture_free(a);
 }
 
 TEST(a_drawn_mask_is_kept) {
   static const char *const name[] = {"Y"};
-  abbe_lib_picture *a = ramp(1), *b = ramp(1);
+  HELD(abbe_lib_picture, a) = ramp(1), *b = ramp(1);
   HELD(abbe_lib_picture, mask) = NULL;
   abbe_lib_comparison *c = NULL;
   double value, noise, limit;
@@ -66,15 +66,13 @@ TEST(a_drawn_mask_is_kept) {
           abbe_lib_comparison_make(a, b, NULL, caustic, 1, &c,
                                    &error)); /* the reference has no such layers */
   assert_null(c);
-  abbe_lib_picture_free(a);
-  abbe_lib_picture_free(b);
 }
 
 TEST(what_is_none_is_refused) {
   static const char *const name[] = {"R", "G", "B"};
-  abbe_lib_picture *a = ramp(1);
+  HELD(abbe_lib_picture, a) = ramp(1);
   HELD(abbe_lib_picture, small) = NULL;
-  abbe_lib_comparison *c = NULL;
+  HELD(abbe_lib_comparison, c) = NULL;
   double value, noise, limit;
   OK(abbe_lib_picture_make(4, 4, 3, name, NULL, &small, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_lib_comparison_make(a, small, NULL, NULL, 0, &c, &error));
@@ -87,8 +85,6 @@ TEST(what_is_none_is_refused) {
           abbe_lib_comparison_value(c, "relative_rmse", true, &value, &noise, &limit, &error));
   assert_null(abbe_lib_comparison_verdict(c, "beauty", false));
   assert_int_equal(abbe_lib_comparison_pixels(c, true), 0);
-  abbe_lib_comparison_free(c);
-  abbe_lib_picture_free(a);
 }
 
 TEST(metrics_have_names) {

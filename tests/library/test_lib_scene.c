@@ -47,14 +47,13 @@ static void assert_same(abbe_lib_picture *a, abbe_lib_picture *b, bool expected)
 
 TEST(a_change_is_a_scene_opened_so) {
   const char *const dim[] = {"camera.fov=20"}, *const both[] = {"camera.fov=20", "ambient=0.5"};
-  abbe_lib_scene *changed = opened(NULL, 0);
+  HELD(abbe_lib_scene, changed) = opened(NULL, 0);
   HELD(abbe_lib_scene, fresh) = opened(both, 2);
   abbe_lib_picture *before = rendered(changed);
   OK(abbe_lib_scene_change(changed, dim, 1, &error));
   OK(abbe_lib_scene_change(changed, both + 1, 1, &error));
   assert_same(rendered(changed), rendered(fresh), true);
   assert_same(before, rendered(changed), false);
-  abbe_lib_scene_free(changed);
 }
 
 TEST(the_camera_moves_and_comes_back) {
@@ -98,7 +97,7 @@ TEST(a_camera_that_moves_stays_sharp) {
 
 TEST(a_trace_agrees_with_the_picture) {
   HELD(abbe_lib_scene, s) = opened(NULL, 0);
-  abbe_lib_picture *truth = NULL, *map = NULL;
+  HELD(abbe_lib_picture, truth) = NULL, *map = NULL;
   HELD(abbe_lib_picture, mapped) = NULL;
   HELD(abbe_lib_picture, picture) = rendered(s);
   abbe_lib_comparison *c = NULL;
@@ -115,8 +114,6 @@ TEST(a_trace_agrees_with_the_picture) {
   OK(abbe_lib_comparison_value(c, "energy_ratio", false, &value, &noise, &limit, &error));
   assert_near(value, 1, 0.05);
   abbe_lib_comparison_free(c);
-  abbe_lib_picture_free(truth);
-  abbe_lib_picture_free(map);
 }
 
 static bool stop_at_once(void *user, double done) {

@@ -26,6 +26,24 @@ static inline void run_passes(abbe_tracer *tracer, size_t passes) {
   for (size_t i = 0; i < passes; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
 }
 
+/* The picture, or the map, after so many passes. */
+static inline abbe_image traced_picture(const abbe_scene *scene, const abbe_trace_desc *desc,
+                                        size_t passes) {
+  abbe_image out = {0};
+  HELD(abbe_tracer, tracer) = make_tracer(scene, desc);
+  run_passes(tracer, passes);
+  OK(abbe_tracer_picture(tracer, &out, &error));
+  return out;
+}
+static inline abbe_image traced_map(const abbe_scene *scene, const abbe_trace_desc *desc,
+                                    size_t passes) {
+  abbe_image out = {0};
+  HELD(abbe_tracer, tracer) = make_tracer(scene, desc);
+  run_passes(tracer, passes);
+  OK(abbe_tracer_map(tracer, &out, &error));
+  return out;
+}
+
 /* A progress function: counts its calls in an int, and ends the work at the first. */
 static inline bool stop_at_once(void *user, double done) {
   assert_true(done >= 0 && done <= 1);

@@ -6,16 +6,17 @@
 
 #include "colorimetry/image/display_ocio.h"
 
+HOLDS(abbe_display);
+
 /* rgb is replaced. */
 static inline void show(const abbe_display_desc *desc, double rgb[3]) {
   static const char *const names[] = {"R", "G", "B"};
-  abbe_display *display = NULL;
+  HELD(abbe_display, display) = NULL;
   OK(abbe_display_make(desc, &display, &error));
   MADE(abbe_image, image, abbe_image_make(1, 1, 3, names, &image, &error));
   for (int k = 0; k < 3; k++) image.data[k] = (float)rgb[k];
   OK(abbe_display_apply(display, &image, &error));
   for (int k = 0; k < 3; k++) rgb[k] = (double)image.data[k];
-  abbe_display_free(display);
 }
 
 static inline void near(const double got[3], const double expected[3], double tolerance,

@@ -217,7 +217,7 @@ TEST(looking_at_the_spectrum) {
     double scale = exp2(-8 + i / COUNT * 0.75);
     for (int k = 0; k < 3; k++) image.data[3 * i + k] = (float)(scale * xyz[k]);
   }
-  abbe_display *display = make(&(abbe_display_desc){0});
+  HELD(abbe_display, display) = make(&(abbe_display_desc){0});
   OK(abbe_display_apply(display, &image, &error));
   for (int i = 0; i < COUNT * STEPS; i++) {
     const float *p = image.data + 3 * i;
@@ -235,11 +235,10 @@ TEST(looking_at_the_spectrum) {
     for (int k = 0; k < 3 && nm < LAST; k++)
       if (fabs((double)p[3 + k] - c[k]) > 0.05) fail_msg("%d nm, step %d: a jump", nm, step);
   }
-  abbe_display_free(display);
 }
 
 TEST(other_channels_stay) {
-  abbe_display *display = make(&(abbe_display_desc){0});
+  HELD(abbe_display, display) = make(&(abbe_display_desc){0});
   MADE(abbe_image, image, abbe_image_make(3, 2, 5, names, &image, &error));
   for (int i = 0; i < 30; i++) image.data[i] = 0.18f;
   OK(abbe_display_apply(display, &image, &error));
@@ -247,7 +246,6 @@ TEST(other_channels_stay) {
     assert_true(i % 5 < 3 ? image.data[i] > 0.4f : image.data[i] == 0.18f);
   MADE(abbe_image, two, abbe_image_make(1, 1, 2, names, &two, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_display_apply(display, &two, &error));
-  abbe_display_free(display);
 }
 
 TEST(unknown_names_list_the_known) {
@@ -313,7 +311,7 @@ TEST(list) {
 /* What the display says of its numbers: 's' sRGB, 'p' Display P3, '4' a power of 2.4, 'q' PQ and
  * 'h' HLG of Rec.2020's primaries, '-' nothing. */
 static char encoding_of(const abbe_display_desc *desc) {
-  abbe_display *display = make(desc);
+  HELD(abbe_display, display) = make(desc);
   double p3[8], curve[5];
   MADE(abbe_image, image, abbe_image_make(1, 1, 3, names, &image, &error));
   image.xy[0] = 0.7; /* of the scene-linear picture */
@@ -328,7 +326,6 @@ static char encoding_of(const abbe_display_desc *desc) {
     kind = image.transfer == 16 ? 'q' : image.transfer == 18 ? 'h' : '?';
   }
   if (kind == '?' && fabs(image.xy[0] - p3[0]) < 1e-4 && image.curve[0] == curve[0]) kind = 'p';
-  abbe_display_free(display);
   return kind;
 }
 

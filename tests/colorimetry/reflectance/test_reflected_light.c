@@ -5,6 +5,7 @@
 #include "colorimetry/rgb_space.h"
 #include "tests/random.h"
 
+HOLDS(abbe_spectrum);
 HOLDS(abbe_reflected_light);
 
 static abbe_reflected_light *make(const char *name, double min_nm, double max_nm,
@@ -36,7 +37,7 @@ TEST(measured_patches_are_integrals) {
     OWNED(abbe_illuminant, illuminant);
     HELD(abbe_reflected_light, light) = make(lights[l], 380, 780, &illuminant);
     for (size_t p = 0; p < ABBE_COLOUR_CHECKER_COUNT; p++) {
-      abbe_spectrum *patch = NULL;
+      HELD(abbe_spectrum, patch) = NULL;
       double wanted[3], xyz[3][3], matrix[3][9], white[3], seen[3];
       OK(abbe_colour_checker_make(abbe_colour_checker_name(p), &patch, &error));
       integrate(&illuminant, patch, wanted);
@@ -49,7 +50,6 @@ TEST(measured_patches_are_integrals) {
         assert_near(seen[k], xyz[0][k], 1e-9);
         assert_near(xyz[1][k], 0, 0);
       }
-      abbe_spectrum_free(patch);
     }
   }
 }
@@ -121,11 +121,11 @@ TEST(colours_are_near_the_printed_ones) {
       {0.4480, 0.4703, 0.5910}, {0.3635, 0.2325, 0.1977}, {0.1958, 0.2519, 0.1977},
       {0.3101, 0.3163, 0.9001}, {0.3101, 0.3163, 0.5910}, {0.3101, 0.3163, 0.3620},
       {0.3101, 0.3163, 0.1977}, {0.3101, 0.3163, 0.0900}, {0.3101, 0.3163, 0.0313}};
-  abbe_reflected_light *light = NULL;
+  HELD(abbe_reflected_light, light) = NULL;
   MADE(abbe_illuminant, c, abbe_illuminant_make("C", &c, &error));
   OK(abbe_reflected_light_make(&c, 360, 830, &light, &error));
   for (size_t i = 0; i < ABBE_COLOUR_CHECKER_COUNT; i++) {
-    abbe_spectrum *spectrum = colour_checker_make(abbe_colour_checker_name(i));
+    HELD(abbe_spectrum, spectrum) = colour_checker_make(abbe_colour_checker_name(i));
     double xyz[3][3];
     abbe_reflected_light_xyz(light, spectrum, xyz);
     const double sum = xyz[0][0] + xyz[0][1] + xyz[0][2];
@@ -133,9 +133,7 @@ TEST(colours_are_near_the_printed_ones) {
                            xyz[0][1] - printed[i][2]};
     if (fabs(off[0]) > 0.0085 || fabs(off[1]) > 0.0055 || fabs(off[2]) > 0.0135)
       fail_msg("%s: off by %.4f, %.4f, %.4f", abbe_colour_checker_name(i), off[0], off[1], off[2]);
-    abbe_spectrum_free(spectrum);
   }
-  abbe_reflected_light_free(light);
 }
 
 /* The mean of 30 charts, thousandths from 380 nm on in steps of 10 nm, and its own x, y, Y under
@@ -203,11 +201,11 @@ static const double of_mean[ABBE_COLOUR_CHECKER_COUNT][3] = {
 
 TEST(a_printed_pair_is_computed) {
   double nm[MEAN_POINTS], value[MEAN_POINTS];
-  abbe_reflected_light *light = NULL;
+  HELD(abbe_reflected_light, light) = NULL;
   MADE(abbe_illuminant, d50, abbe_illuminant_make("D50", &d50, &error));
   OK(abbe_reflected_light_make(&d50, 380, 780, &light, &error));
   for (size_t i = 0; i < ABBE_COLOUR_CHECKER_COUNT; i++) {
-    abbe_spectrum *spectrum = NULL;
+    HELD(abbe_spectrum, spectrum) = NULL;
     double xyz[3][3];
     for (size_t k = 0; k < MEAN_POINTS; k++) {
       nm[k] = 380 + 10 * (double)k;
@@ -220,9 +218,7 @@ TEST(a_printed_pair_is_computed) {
                            xyz[0][1] - of_mean[i][2]};
     if (fabs(off[0]) > 0.0005 * dark || fabs(off[1]) > 0.0005 * dark || fabs(off[2]) > 0.0002)
       fail_msg("%s: off by %.5f, %.5f, %.5f", abbe_colour_checker_name(i), off[0], off[1], off[2]);
-    abbe_spectrum_free(spectrum);
   }
-  abbe_reflected_light_free(light);
 }
 
 TEST(names_are_found_and_refused) {
@@ -281,12 +277,11 @@ TEST(white_light_is_exact) {
     double white[3], wanted[3][3], out[3];
     abbe_reflected_light_white(light, white);
     for (size_t p = 0; p < ABBE_COLOUR_CHECKER_COUNT; p++) {
-      abbe_spectrum *patch = patch_of(abbe_colour_checker_name(p));
+      HELD(abbe_spectrum, patch) = patch_of(abbe_colour_checker_name(p));
       abbe_reflected_light_xyz(light, patch, wanted);
       fill(light, patch, even);
       abbe_band_reflection_apply((const float(*)[4])cell, white, white, out);
       for (int k = 0; k < 3; k++) assert_near(out[k], wanted[0][k], 1e-6);
-      abbe_spectrum_free(patch);
     }
   }
 }
@@ -356,7 +351,7 @@ TEST(light_that_is_spread) {
   static const char *const patches[] = {"red", "bluish green", "blue flower", "foliage", "orange"};
   HELD(abbe_reflected_light, light) = band_reflection_make("D65");
   for (size_t p = 0; p < 5; p++) {
-    abbe_spectrum *patch = patch_of(patches[p]);
+    HELD(abbe_spectrum, patch) = patch_of(patches[p]);
     for (size_t l = 0; l < 5; l++) {
       double off[2];
       measure(light, patch, lights[l].of, off);
@@ -365,7 +360,6 @@ TEST(light_that_is_spread) {
       assert_true(off[1] < lights[l].most);
       if (l < 2) assert_true(off[1] < 0.5 * off[0]);
     }
-    abbe_spectrum_free(patch);
   }
 }
 

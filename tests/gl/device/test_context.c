@@ -3,6 +3,8 @@
 
 #include "gl/device/context.h"
 
+HOLDS(abbe_context);
+
 static void assert_works(abbe_context *context) {
   const abbe_gl *gl = abbe_context_gl(context);
   GLint major = 0, minor = 0;
@@ -13,11 +15,10 @@ static void assert_works(abbe_context *context) {
 }
 
 TEST(the_cpu_makes_4_5) {
-  abbe_context *context = NULL;
+  HELD(abbe_context, context) = NULL;
   OK(abbe_context_make(ABBE_CONTEXT_CPU, &context, &error));
   assert_works(context);
   assert_contains(abbe_context_description(context), "cpu: llvmpipe");
-  abbe_context_free(context);
 }
 
 /* Where there is no GPU the sentence says so and names the way out. */
@@ -36,23 +37,21 @@ TEST(a_gpu_makes_one_or_says_why) {
 
 TEST(contexts_follow_each_other) {
   for (int i = 0; i < 3; i++) {
-    abbe_context *context = NULL;
+    HELD(abbe_context, context) = NULL;
     OK(abbe_context_make(ABBE_CONTEXT_CPU, &context, &error));
     assert_works(context);
-    abbe_context_free(context);
   }
   abbe_context_free(NULL);
 }
 
 TEST(gl_errors_are_named_and_cleared) {
-  abbe_context *context = NULL;
+  HELD(abbe_context, context) = NULL;
   OK(abbe_context_make(ABBE_CONTEXT_CPU, &context, &error));
   const abbe_gl *gl = abbe_context_gl(context);
   gl->Enable(0xffff);
   REFUSED(ABBE_GL, "the test's own mistake", abbe_gl_check(gl, "the test's own mistake", &error));
   assert_contains(last_error.text, "invalid enum");
   OK(abbe_gl_check(gl, "nothing", &error));
-  abbe_context_free(context);
 }
 
 TEST(unknown_back_ends_are_refused) {

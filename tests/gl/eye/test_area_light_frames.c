@@ -3,7 +3,7 @@
 #include "tests/gl/frame.h"
 
 #include "base/maths.h"
-#include "validation/trace/tracer/tracer.h"
+#include "tests/validation/trace_scene.h"
 
 /* Mean Y of the picture, as the renderer draws it. */
 static double drawn(const char *text) {
@@ -17,13 +17,9 @@ static double drawn(const char *text) {
 static double traced(const char *text) {
   const abbe_trace_desc desc = FIELDS(.width = 8, .height = 8, .no_map = true, .photons = 1 << 14,
                                       .threads = 1, .space = ABBE_RGB_SPACE_XYZ);
-  abbe_tracer *tracer = NULL;
   OWNED(abbe_scene, scene) = scene_of(text);
-  OK(abbe_tracer_make(&scene, &desc, &tracer, &error));
-  for (int i = 0; i < 8; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
-  MADE(abbe_image, picture, abbe_tracer_picture(tracer, &picture, &error));
+  OWNED(abbe_image, picture) = traced_picture(&scene, &desc, 8);
   const double seen = channel_mean(&picture, "Y");
-  abbe_tracer_free(tracer);
   return seen;
 }
 

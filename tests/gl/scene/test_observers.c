@@ -3,7 +3,7 @@
 #include "tests/gl/frame.h"
 
 #include "colorimetry/spectral_picture/relight.h"
-#include "validation/trace/tracer/tracer.h"
+#include "tests/validation/trace_scene.h"
 
 enum { SIDE = 32, BANDS = 40, PASSES = 12 };
 
@@ -46,12 +46,8 @@ static void trace(const abbe_scene *scene, abbe_observer observer, size_t bands,
   const abbe_trace_desc desc = FIELDS(.width = SIDE, .height = SIDE, .min_nm = 360, .max_nm = 830,
                                       .no_map = true, .bands = bands, .space = ABBE_RGB_SPACE_XYZ,
                                       .observer = observer, .photons = 1 << 16, .threads = 2);
-  abbe_tracer *tracer = NULL;
-  OK(abbe_tracer_make(scene, &desc, &tracer, &error));
-  for (size_t i = 0; i < passes; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
-  OK(abbe_tracer_picture(tracer, out, &error));
+  *out = traced_picture(scene, &desc, passes);
   check_says(out, observer);
-  abbe_tracer_free(tracer);
 }
 
 static void trace_xyz(const abbe_scene *scene, abbe_observer observer, size_t passes,

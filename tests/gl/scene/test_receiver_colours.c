@@ -4,7 +4,7 @@
 
 #include "colorimetry/reflectance/reflected_light.h"
 #include "gl/plan/plan.h"
-#include "validation/trace/tracer/tracer.h"
+#include "tests/validation/trace_scene.h"
 
 enum { SIDE = 48, PASSES = 6 };
 
@@ -41,11 +41,7 @@ static void trace(const abbe_scene *scene, abbe_image *out) {
   const abbe_trace_desc desc =
       FIELDS(.width = SIDE, .height = SIDE, .no_map = true, .space = ABBE_RGB_SPACE_XYZ,
              .photons = 1 << 18, .threads = 2);
-  abbe_tracer *tracer = NULL;
-  OK(abbe_tracer_make(scene, &desc, &tracer, &error));
-  for (int i = 0; i < PASSES; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
-  OK(abbe_tracer_picture(tracer, out, &error));
-  abbe_tracer_free(tracer);
+  *out = traced_picture(scene, &desc, PASSES);
 }
 
 /* Sum of |X| + |Y| + |Z| of the differences, over that of the caustic. */

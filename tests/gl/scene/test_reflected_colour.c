@@ -4,7 +4,7 @@
 
 #include "colorimetry/observer.h"
 #include "colorimetry/rgb_space.h"
-#include "validation/trace/tracer/tracer.h"
+#include "tests/validation/trace_scene.h"
 
 /* Seen straight, and lit at right angles: the radiance is the irradiance times the reflectance over
  * pi. */
@@ -37,12 +37,8 @@ static void render_xyz(const abbe_scene *scene, abbe_rgb_space space, double xyz
 static void trace_xyz(const abbe_scene *scene, abbe_rgb_space space, size_t passes, double xyz[3]) {
   const abbe_trace_desc desc = {
       .width = 16, .height = 16, .no_map = true, .space = space, .photons = 4096, .threads = 1};
-  abbe_tracer *tracer = NULL;
-  OK(abbe_tracer_make(scene, &desc, &tracer, &error));
-  for (size_t i = 0; i < passes; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
-  MADE(abbe_image, image, abbe_tracer_picture(tracer, &image, &error));
+  OWNED(abbe_image, image) = traced_picture(scene, &desc, passes);
   mean_xyz(&image, space, xyz);
-  abbe_tracer_free(tracer);
 }
 
 static void integrate(const abbe_scene *scene, double xyz[3]) {

@@ -16,9 +16,7 @@ TEST(the_picture_is_the_tracers) {
       .no_map = true, .width = 16, .height = 12, .photons = 256, .seed = ABBE_TRACE_TIMES_SEED};
   OWNED(abbe_scene, scene) = scene_of(SCENE);
   MADE(abbe_image, picture, abbe_trace_times_measure(&scene, &desc, &times, &picture, &error));
-  HELD(abbe_tracer, tracer) = make_tracer(&scene, &same);
-  run_passes(tracer, 2);
-  MADE(abbe_image, own, abbe_tracer_picture(tracer, &own, &error));
+  OWNED(abbe_image, own) = traced_picture(&scene, &same, 2);
   assert_int_equal(picture.channels, own.channels);
   assert_memory_equal(picture.data, own.data, 16 * 12 * own.channels * sizeof *own.data);
   assert_true(times.fastest_ms > 0);

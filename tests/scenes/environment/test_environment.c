@@ -246,12 +246,10 @@ TEST(shares_are_the_weights) {
 TEST(draws) {
   const double weight[] = {0, 5, 0, 1, 2};
   size_t hits[5] = {0};
-  abbe_alias_table table;
-  OK(abbe_alias_table_make(weight, 5, &table, &error));
+  MADE(abbe_alias_table, table, abbe_alias_table_make(weight, 5, &table, &error));
   for (int i = 0; i < 80000; i++) hits[abbe_alias_table_draw(&table, (i + 0.5) / 80000)]++;
   for (int i = 0; i < 5; i++) assert_near((double)hits[i], weight[i] * 10000, 3);
   assert_true(weight[abbe_alias_table_draw(&table, 1 - 0x1p-53)] > 0);
-  abbe_alias_table_free(&table);
   abbe_alias_table_free(NULL);
 }
 

@@ -275,14 +275,13 @@ TEST(texels_show_the_map) {
 
 TEST(wrong_sides) {
   abbe_radiance_map map = {0};
-  abbe_radiance_cube cube;
+  OWNED(abbe_radiance_cube, cube) = {0};
   const size_t wrong[] = {0, 3, 100, 2048};
   for (size_t i = 0; i < 4; i++)
     REFUSED(ABBE_INVALID_ARGUMENT, "a power of two",
             abbe_radiance_cube_make(&map, wrong[i], &cube, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "a cube of a map without texels",
           abbe_radiance_cube_make(&map, 16, &cube, &error));
-  abbe_radiance_cube_free(&cube);
   abbe_radiance_cube_free(NULL);
 }
 

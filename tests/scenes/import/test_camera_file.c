@@ -158,7 +158,7 @@ TEST(pictures_say_their_exposure) {
   static const char *const names[] = {"R"};
   for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
     OWNED(abbe_image, image);
-    abbe_scene scene;
+    OWNED(abbe_scene, scene) = {0};
     make(of[i].camera, &scene);
     OK(abbe_image_make(1, 1, 1, names, &image, &error));
     OK(abbe_scene_mark_exposure(&scene, &image, &error));
@@ -167,6 +167,5 @@ TEST(pictures_say_their_exposure) {
       assert_null(text);
     else
       assert_string_equal(text, of[i].text);
-    abbe_scene_free(&scene);
   }
 }

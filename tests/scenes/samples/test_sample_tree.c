@@ -152,10 +152,8 @@ TEST(cuts) {
 
 TEST(nothing) {
   const abbe_surface_samples none = {0};
-  abbe_sample_tree tree;
-  OK(abbe_sample_tree_make(&none, &tree, &error));
+  MADE(abbe_sample_tree, tree, abbe_sample_tree_make(&none, &tree, &error));
   assert_int_equal(tree.count, 0);
-  abbe_sample_tree_free(&tree);
   abbe_sample_tree_free(NULL);
 }
 

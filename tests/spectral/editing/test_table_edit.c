@@ -398,7 +398,7 @@ TEST_WITH(a_new_table_begins_with_a_record, make_file, drop_file) {
 }
 
 TEST(a_record_moves_from_table_to_table) {
-  abbe_table_edit *from = parse(two);
+  HELD(abbe_table_edit, from) = parse(two);
   HELD(abbe_table_edit, to) = parse("materials: [{name: a}]\n");
   FREED char *text = NULL;
   OK(abbe_table_edit_record(from, "crown", &text, &error));
@@ -409,5 +409,4 @@ TEST(a_record_moves_from_table_to_table) {
   assert_string_equal(text_of(to),
                       "materials: [{name: a}, {name: crown, model: cauchy, coefficients: [1.5220, "
                       "0.00459], range_nm: [380, 780], source: \"[Somebody] p. 3\"}]\n");
-  abbe_table_edit_free(from);
 }

@@ -103,9 +103,7 @@ static void trace_layer(abbe_scene *scene, double middle, double height, size_t 
     for (size_t i = 0; i < floor->mesh.vertex_count; i++) floor->mesh.position[i][2] = at;
     floor->exact.parallelogram[0][2] = at;
     floor->min[2] = floor->max[2] = at;
-    HELD(abbe_tracer, tracer) = make_tracer(scene, &desc);
-    run_passes(tracer, 4);
-    MADE(abbe_image, map, abbe_tracer_map(tracer, &map, &error));
+    OWNED(abbe_image, map) = traced_map(scene, &desc, 4);
     const size_t y = abbe_image_find_channel(&map, "Y"),
                  e = abbe_image_find_channel(&map, "stderr.Y");
     for (size_t i = 0; i < side * side; i++) {

@@ -30,9 +30,7 @@ static void check_picture(const abbe_bounded_trace_desc *desc, size_t passes,
   abbe_trace_desc own = desc->trace;
   abbe_image filtered;
   own.guides = desc->filtered;
-  HELD(abbe_tracer, tracer) = make_tracer(&scene, &own);
-  run_passes(tracer, passes);
-  MADE(abbe_image, raw, abbe_tracer_picture(tracer, &raw, &error));
+  OWNED(abbe_image, raw) = traced_picture(&scene, &own, passes);
   const abbe_denoise_desc denoise = {0};
   if (desc->filtered) {
     OK(abbe_denoise_picture(&raw, &denoise, &filtered, &error));

@@ -14,13 +14,9 @@ static const abbe_trace_desc trace = {
 
 /* After so many passes, of another seed. */
 static abbe_image make_picture(size_t passes) {
-  abbe_image image;
   abbe_trace_desc own = trace;
   own.seed = 17;
-  HELD(abbe_tracer, tracer) = make_tracer(&scene, &own);
-  run_passes(tracer, passes);
-  OK(abbe_tracer_picture(tracer, &image, &error));
-  return image;
+  return traced_picture(&scene, &own, passes);
 }
 
 static abbe_checked_picture check(const abbe_image *picture, double max_error, abbe_image *traced) {
@@ -58,9 +54,7 @@ TEST(a_bad_picture) {
   assert_true(c.given.bound > 2);
   if (!(c.traced.bound <= 2)) fail_msg("%zu passes: %g of their own", c.passes, c.traced.bound);
   /* The passes are the tracer's own, to the bit. */
-  HELD(abbe_tracer, tracer) = make_tracer(&scene, &trace);
-  run_passes(tracer, c.passes);
-  MADE(abbe_image, own, abbe_tracer_picture(tracer, &own, &error));
+  OWNED(abbe_image, own) = traced_picture(&scene, &trace, c.passes);
   check_same_image(&own, &traced);
 }
 

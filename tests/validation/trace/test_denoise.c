@@ -295,11 +295,7 @@ static abbe_image trace(const abbe_scene *scene, abbe_rgb_space space, uint32_t 
                         size_t passes) {
   const abbe_trace_desc desc = FIELDS(.no_map = true, .guides = true, .width = 40, .height = 30,
                                       .space = space, .bands = 2, .photons = 20000, .seed = seed);
-  HELD(abbe_tracer, tracer) = make_tracer(scene, &desc);
-  run_passes(tracer, passes);
-  abbe_image image;
-  OK(abbe_tracer_picture(tracer, &image, &error));
-  return image;
+  return traced_picture(scene, &desc, passes);
 }
 
 static double distance(const abbe_image *a, const abbe_image *b, const char *name) {

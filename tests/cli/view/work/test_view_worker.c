@@ -4,6 +4,8 @@
 
 #include "cli/view/work/view_worker.h"
 
+HOLDS(abbe_view_worker);
+
 enum { SIDE = 128 };
 
 static abbe_view_worker *made(void) {
@@ -46,7 +48,7 @@ static void leave(abbe_view_worker *w, abbe_view_stage stage, bool warms, double
 }
 
 TEST(whoever_draws_it_a_picture_is_the_same) {
-  abbe_view_worker *a = made(), *b = made();
+  HELD(abbe_view_worker, a) = made(), *b = made();
   leave(a, ABBE_VIEW_MOVING, false, 0);
   leave(a, ABBE_VIEW_MOVING, false, 0.01);
   OWNED(abbe_image, one) = draw(a, ABBE_VIEW_BALANCED, false, 0.02);
@@ -60,8 +62,6 @@ TEST(whoever_draws_it_a_picture_is_the_same) {
   assert_int_equal(one.channels, other.channels);
   assert_memory_equal(one.data, other.data,
                       one.width * one.height * one.channels * sizeof *one.data);
-  abbe_view_worker_free(a);
-  abbe_view_worker_free(b);
 }
 
 static double luminance(const abbe_image *image, int x, int y) {
@@ -89,7 +89,7 @@ static double beyond(const abbe_image *image, const abbe_image *other) {
  * without these bounds leaves 9 % of the light where it was. The fifth frame's photons start where
  * the first one's do, so without the frames before it both are the same. */
 TEST(a_dragged_lamp_leaves_no_ghosts) {
-  abbe_view_worker *a = made(), *b = made();
+  HELD(abbe_view_worker, a) = made(), *b = made();
   double was = 0, blended = 0, light = 0;
   leave(a, ABBE_VIEW_MOVING, false, 0);
   OWNED(abbe_image, now) = draw(b, ABBE_VIEW_MOVING, false, 0.04);
@@ -107,6 +107,4 @@ TEST(a_dragged_lamp_leaves_no_ghosts) {
   print_message("%.4f of the light that has moved is where it was; blending moves %.4f of all\n",
                 ghosts / was, blended / light);
   assert_true(was > 0.01 * light && blended > 0.01 * light && ghosts < 0.02 * was);
-  abbe_view_worker_free(a);
-  abbe_view_worker_free(b);
 }

@@ -94,13 +94,12 @@ TEST(squares_and_strides) {
 TEST(wrong_rings_are_refused) {
   const double falling[3] = {0, 2, 1}, centre[3] = {0, 0, 0};
   abbe_map_layout layout = look_down(true, false);
-  abbe_rings rings;
+  OWNED(abbe_rings, rings) = {0};
   REFUSED(ABBE_INVALID_ARGUMENT, "ring edge 2 is 1",
           abbe_rings_make(&layout, 8, 8, centre, falling, 2, &rings, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "",
           abbe_rings_make(&layout, 8, 8, centre, falling, 65, &rings, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "",
           abbe_rings_make(&layout, 0, 8, centre, falling, 1, &rings, &error));
-  abbe_rings_free(&rings);
   abbe_rings_free(NULL);
 }

@@ -20,9 +20,7 @@ TEST(a_lit_floor_is_even) {
   for (size_t c = 0; c < 5; c++) {
     const abbe_trace_desc desc = {
         .no_map = true, .width = 3, .height = 3, .photons = 256, .threads = 1, .bands = counts[c]};
-    HELD(abbe_tracer, tracer) = make_tracer(&scene, &desc);
-    run_passes(tracer, 2);
-    MADE(abbe_image, picture, abbe_tracer_picture(tracer, &picture, &error));
+    OWNED(abbe_image, picture) = traced_picture(&scene, &desc, 2);
     for (size_t i = 0; i < counts[c]; i++) {
       const double middle = 380 + 400 * ((double)i + 0.5) / (double)counts[c];
       assert_near(band_at(&picture, "", middle, 4), 0.00125, 1e-5 * 0.00125);

@@ -1,8 +1,7 @@
 /* A traced spectral picture looked at under another illuminant is the trace under that one. */
-#include "tests/scenes/scene_text.h"
+#include "tests/validation/trace_scene.h"
 
 #include "colorimetry/spectral_picture/relight.h"
-#include "validation/trace/tracer/tracer.h"
 
 enum { SIDE = 32, PASSES = 24 };
 
@@ -18,15 +17,11 @@ static const char SCENE[] =
     "- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.8}\n";
 
 static void trace(const char *illuminant, size_t bands, abbe_image *out) {
-  abbe_tracer *tracer = NULL;
   OWNED(abbe_scene, scene) = scene_of(printed(SCENE, illuminant));
   const abbe_trace_desc desc =
       FIELDS(.width = SIDE, .height = SIDE, .bands = bands, .space = ABBE_RGB_SPACE_XYZ,
              .photons = 1 << 15, .no_map = true, .threads = 2);
-  OK(abbe_tracer_make(&scene, &desc, &tracer, &error));
-  for (int i = 0; i < PASSES; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
-  OK(abbe_tracer_picture(tracer, out, &error));
-  abbe_tracer_free(tracer);
+  *out = traced_picture(&scene, &desc, PASSES);
 }
 
 /* XYZ over the picture, and the standard errors that the file states, as of independent pixels. */

@@ -68,9 +68,7 @@ TEST(the_layout_does_not_hang_on_the_seed) {
   abbe_map_layout layout[2];
   for (uint32_t seed = 0; seed < 2; seed++) {
     abbe_trace_desc desc = {.no_picture = true, .map_width = 16, .photons = 1000, .seed = seed};
-    HELD(abbe_tracer, tracer) = make_tracer(&scene, &desc);
-    run_passes(tracer, 1);
-    MADE(abbe_image, map, abbe_tracer_map(tracer, &map, &error));
+    OWNED(abbe_image, map) = traced_map(&scene, &desc, 1);
     OK(abbe_map_layout_read(&map, "map", &layout[seed], &error));
   }
   assert_true(abbe_map_layout_same(&layout[0], &layout[1]));
@@ -150,9 +148,7 @@ static size_t coloured_texels(const char *text) {
   OWNED(abbe_scene, scene) = scene_of(text);
   abbe_trace_desc desc = {
       .no_picture = true, .map_width = 24, .photons = 20000, .threads = 1, .seed = 3};
-  HELD(abbe_tracer, tracer) = make_tracer(&scene, &desc);
-  run_passes(tracer, 8);
-  MADE(abbe_image, map, abbe_tracer_map(tracer, &map, &error));
+  OWNED(abbe_image, map) = traced_map(&scene, &desc, 8);
   const double white[3] = {0.95047, 1, 1.08883}; /* D65 */
   size_t channel[3], errors[3], coloured = 0, lit = 0;
   const char *const names[3] = {"X", "Y", "Z"};

@@ -108,7 +108,7 @@ TEST(a_grid_can_be_filled_again) {
   static abbe_grid_photon photon[PHOTONS];
   uint64_t random = 9;
   scatter(photon, PHOTONS, (double[3]){0, 0, 0}, 1, false, &random);
-  abbe_photon_grid grid = {0};
+  OWNED(abbe_photon_grid, grid) = {0};
   const size_t counts[] = {10, PHOTONS, 1, 0, 1500};
   for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
     OK(abbe_photon_grid_fill(&grid, photon, counts[c], 0.3f, 2, &error));
@@ -118,6 +118,5 @@ TEST(a_grid_can_be_filled_again) {
     abbe_photon_grid_gather(&grid, photon[0].p, 0.3f, 99, 1, take, &g);
     assert_int_equal(g.count, 0);
   }
-  abbe_photon_grid_free(&grid);
   abbe_photon_grid_free(NULL);
 }
