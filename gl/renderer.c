@@ -66,6 +66,8 @@ static abbe_result draw_shafts(abbe_renderer *r, abbe_error *error) {
        abbe_transports_free(&r->transports, r->pages_stay))                                        \
   PART(EYE, meshes, abbe_seen_meshes_make(&r->scene, &r->camera.view, &r->meshes, error),          \
        abbe_seen_meshes_free(&r->meshes))                                                          \
+  PASS(EYE, glow, abbe_glow_pass_make(&r->lighting, v, &r->glow, error),                           \
+       abbe_glow_pass_run(&r->glow, error), abbe_glow_pass_free(&r->glow))                         \
   PASS(EYE, receivers, abbe_receivers_pass_make(&r->lighting, v, &r->receivers, error),            \
        abbe_receivers_pass_run(&r->receivers, error), FREED(receivers, receivers_pass))            \
   PASS(EYE, refraction,                                                                            \

@@ -90,8 +90,8 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   variant.textured = r->plan.textured;
   variant.receiver_colours = r->plan.receiver_colours;
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);
-  r->lighting = (abbe_lighting){&r->scene,  &r->views,      &r->layers, &r->atlas, &r->map,
-                                &r->camera, &r->transports, &r->shafts, &r->meshes};
+  r->lighting = (abbe_lighting){&r->scene,  &r->views,      &r->layers, &r->atlas,  &r->map,
+                                &r->camera, &r->transports, &r->shafts, &r->meshes, &r->glow};
   return abbe_renderer_make_stage(r, ABBE_STAGE_EYE, &variant, error);
 }
 

@@ -33,6 +33,9 @@ static uint64_t mix_material(uint64_t h, const abbe_material *m) {
   MIX(h, m->max_nm);
   MIX(h, m->extrapolate);
   for (int i = 0; i < 2; i++) h = mix_spectrum(h, m->attenuation_yz[i]);
+  MIX(h, m->fluorescence.yield);
+  h = mix_spectrum(h, m->fluorescence.excitation);
+  h = mix_spectrum(h, m->fluorescence.emission);
   return mix_spectrum(h, m->attenuation);
 }
 
@@ -199,6 +202,7 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
   MIX(h, plan->filmed);
   MIX(h, plan->crystals);
   MIX(h, plan->pleochroic);
+  MIX(h, plan->glowing);
   return h;
 }
 

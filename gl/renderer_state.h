@@ -47,6 +47,7 @@ struct abbe_renderer {
   abbe_camera_view camera;
   abbe_seen_meshes meshes;
   abbe_lighting lighting;
+  abbe_glow_pass glow;
   abbe_receivers_pass receivers;
   abbe_refraction_pass refraction;
   abbe_refraction_kept kept; /* kept from the one before, between it and the next; else zero */

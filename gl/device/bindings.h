@@ -63,10 +63,14 @@
 #define BINDING_PAGE_TEXELS 34
 #define BINDING_UNFINISHED 33
 
+/* What makes refractors glow: rays, and what each of their bands gives. */
+#define BINDING_GLOW 35
+#define BINDING_GLOW_SUMS 36
+
 /* A list that becomes the size of a dispatch. */
 #define BINDING_DISPATCH 26
 
-#define BINDING_COUNT 35
+#define BINDING_COUNT 37
 
 /* Texture units that keep what they show; passes bind theirs below and say so. */
 #define UNIT_BVH_NODES 7
@@ -83,5 +87,6 @@
 #define UNIT_BAND_TEXELS 18
 #define UNIT_SEEN_RECEIVERS 19
 #define UNIT_FILMS 20
+#define UNIT_GLOW 21
 
 #endif

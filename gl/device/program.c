@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_FILES = 48, MAX_STAGES = 4 };
+enum { MAX_FILES = 64, MAX_STAGES = 4 };
 
 /* Source being put together; files are numbered as #line knows them. */
 typedef struct source {

@@ -1,5 +1,17 @@
 #include "gl/eye/lighting.h"
 
+#include "gl/device/bindings.h"
+
+static void set_glow(const abbe_glow_pass *glow, GLuint program) {
+  const abbe_gl *gl = glow->lighting->scene->gpu->gl;
+  const GLsizei count = (GLsizei)glow->lighting->scene->plan->refractor_count;
+  abbe_gpu_bind_array(glow->lighting->scene->gpu, program, "glow_cells", UNIT_GLOW, glow->cells);
+  gl->Uniform4fv(gl->GetUniformLocation(program, "glow_low"), count, glow->low[0]);
+  gl->Uniform3fv(gl->GetUniformLocation(program, "glow_size"), count, glow->size[0]);
+  gl->Uniform4fv(gl->GetUniformLocation(program, "glow_ball"), count, glow->ball[0]);
+  gl->Uniform3fv(gl->GetUniformLocation(program, "glow_light"), count, glow->light[0]);
+}
+
 static void set_camera(const abbe_lighting *lighting, GLuint program) {
   const abbe_gl *gl = lighting->scene->gpu->gl;
   const abbe_view *view = &lighting->camera->view;
@@ -29,5 +41,6 @@ void abbe_lighting_use(const abbe_lighting *lighting, GLuint program) {
   abbe_light_layers_set(lighting->layers, program);
   abbe_transports_set(lighting->transports, program);
   abbe_shaft_grid_set(lighting->shafts, program);
+  if (lighting->scene->plan->glowing) set_glow(lighting->glow, program);
   set_camera(lighting, program);
 }

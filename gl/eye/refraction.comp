@@ -2,6 +2,7 @@
 // energy followed to what it shows, and the reflection on the outside. Opaque things in front win
 // by the depth test. Threads are of listed pixels: triangles smaller than a pixel cost nothing more.
 // KEEPS_SIGHTS: what it finds of receivers are places, whose light sights.comp looks up.
+// GLOW_RAYS: of rays that are listed what makes a refractor glow (glow_rays.glsl).
 // REFINES: bands are joined first, and listed where what they show differs from what their neighbours
 // show; REFINED: the listed bands by all their samples, added to the picture.
 layout(local_size_x = 256) in;
@@ -107,6 +108,9 @@ int refractor;  // that this thread's pixel shows
 #endif
 #include "walk.glsl"
 #endif
+#ifdef GLOW_RAYS
+#include "wide_sum.glsl"
+#endif
 #include "camera_bands.glsl"
 
 // SHARES_SPECTRUM: the samples of a pixel share the spectrum, each with wavelengths of its own. Neighbours
@@ -177,6 +181,9 @@ vec3 seen(vec3 p, vec3 d, Spread spread, float t_min, float t_max, out bool met)
   const bool blurred = false;
 #endif
   seen_at = t;
+#ifdef GLOW_RAYS
+  return vec3(0);
+#endif
 #ifdef AREA_LIGHTS
   vec3 lamp;
   float lamp_at = met ? t : t_max;
@@ -299,4 +306,7 @@ void write_pixel(uint where, int base, int count, vec3 sum) {
 #include "refraction_threads.glsl"
 #else
 #include "refraction_pixels.glsl"
+#endif
+#ifdef GLOW_RAYS
+#include "glow_rays.glsl"
 #endif

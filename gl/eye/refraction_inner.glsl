@@ -60,11 +60,13 @@ vec3 seen_outside(vec3 p, vec3 d, Spread spread) {
 #define Passed Depth
 #define PASSED(metres) ((metres) * wave_attenuation(crystal, refractor, ray.wave, ray.k))
 #define WEIGHT_AFTER(passed) band_left(passed)
+#define DEPTH_OF(passed) (passed)
 #else
 #define Passed float
 #define PASSED(metres) (metres)
 #ifdef BAND_PARTS
 #define WEIGHT_AFTER(metres) band_left((metres) * per_m)
+#define DEPTH_OF(metres) ((metres) * per_m)
 #else
 #define WEIGHT_AFTER(metres) (exp(-per_m * (metres)) * band_weight)
 #endif
@@ -96,7 +98,7 @@ vec3 through(Hit front, vec3 d) {
 #else
   InnerRay ray = InnerRay(front.p, d, front.facet, face_shares(refractor, front.facet, true, -dot(d, front.n), n).y);
 #endif
-  vec3 light = vec3(0);
+  vec3 light = vec3(0), glow = vec3(0);
 #ifdef KEEPS_SIGHTS
   sight_tail = vec3(0);
 #endif
@@ -117,6 +119,10 @@ vec3 through(Hit front, vec3 d) {
     bool shows = false;
     while (order < counts.exits) {
       InnerHit h = next_inner_hit(refractor, ray);
+#ifdef GLOWS
+      float metres = distance(h.p, ray.p);
+      glow += glow_along(refractor, ray.share, n, ray.p, ray.d, metres, DEPTH_OF(path), DEPTH_OF(PASSED(metres)));
+#endif
 #ifdef ABSORBING
       path += PASSED(distance(h.p, ray.p));
       limit *= shown != vec3(0) ? exp(least_per_m * distance(h.p, ray.p)) : 1.0;
@@ -147,7 +153,7 @@ vec3 through(Hit front, vec3 d) {
 #ifdef KEEPS_SIGHTS
   sight_tail = tail;
 #endif
-  return light * tail;
+  return light * tail + glow;
 }
 
 // On a refractor without an exact surface the ray meets what the front layer shows.

@@ -31,7 +31,9 @@ vec3 band_light(int band, out float mirrored) {
 #endif
 }
 
-#ifdef REFINED
+#ifdef GLOW_RAYS
+// glow_rays.glsl has its main().
+#elif defined(REFINED)
 void main() {
   copy_all();
   uint listed = thread_number();

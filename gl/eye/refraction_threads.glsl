@@ -135,7 +135,9 @@ vec3 band_light(int band, bool in_mirror, bool both, out float mirrored) {
 #endif
 }
 
-#ifdef REFINED
+#ifdef GLOW_RAYS
+// glow_rays.glsl has its main().
+#elif defined(REFINED)
 void main() {
   copy_all();
   uint listed = group_number() * uint(PIXELS) + uint(place);

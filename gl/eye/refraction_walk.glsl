@@ -70,7 +70,16 @@ vec3 shown(PathState w, PathState other) {
     lamps += step_n * step_n * in_band(w, scattered);
 #endif
 #ifdef ABSORBING
-    if (w.inside != 0u && met) absorb_inside(w, receiver ? seen_at : h.hit.t);
+#ifdef GLOWS
+    Depth depth = w.depth;
+#endif
+    float metres = receiver ? seen_at : h.hit.t;
+    if (w.inside != 0u && met) absorb_inside(w, metres);
+#ifdef GLOWS
+    if (w.inside != 0u && met)
+      lamps += glow_along(medium_of(w.inside), w.share, medium_n(w.inside) / medium_n(eye_inside), w.p, w.d, metres, depth,
+                          w.depth - depth);
+#endif
 #endif
     if (met && !receiver) {
       float ended, dropped, absorbed;

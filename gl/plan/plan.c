@@ -209,6 +209,10 @@ static void list_eye(abbe_plan *plan) {
   else
     abbe_plan_add(plan, ABBE_PASS_EYE_ADAPTIVE, "%s",
                   plan->desc.upsample > 1 ? "none: samples are far apart" : "none, as asked");
+  if (plan->glowing)
+    abbe_plan_add(
+        plan, ABBE_PASS_EYE_GLOW,
+        "a refractor is fluorescent: what excites it is found in 12 cells along each axis");
   if (plan->camera_sees_refractor && plan->eye_exits > 1)
     abbe_plan_add(plan, ABBE_PASS_EYE_REFRACTION,
                   "one direction a wavelength, until less than %g of its light is left, %zu exits "
@@ -330,6 +334,8 @@ static void combine(abbe_plan *plan) {
   plan->edges = caustics && !published && plan->facets;
   if (published) plan->crystals = plan->pleochroic = false;
   plan->band_parts = (plan->tinting || plan->colouring || plan->pleochroic) && !published;
+  plan->glowing = plan->glowing && plan->band_parts && !plan->layers &&
+                  plan->refractor_count <= ABBE_PLAN_MOST_GLOWING;
 }
 
 /* Whether it is alike all around, to a rounding: clear objects change nothing then. */

@@ -115,6 +115,7 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "FRONT_LAYER", v->layers || v->hierarchy);
   if (v->tints > 0) print_count(to, "TINTS", v->tints);
   if (v->films) print_count(to, "FILM_ANGLES", ABBE_FILM_ANGLES);
+  if (v->glows) print_count(to, "GLOW_CELLS", ABBE_PLAN_GLOW_CELLS);
   if (v->receiver_colours) {
     print_count(to, "RECEIVER_COLOURS", 1);
     print_count(to, "BAND_TURNS", ABBE_BAND_REFLECTION_TURNS);

@@ -27,6 +27,7 @@
   X(receiver_hierarchy, RECEIVER_HIERARCHY, p->receivers == ABBE_RECEIVER_BVH)                     \
   X(absorbing, ABSORBING, p->absorbing)                                                            \
   X(band_parts, BAND_PARTS, p->band_parts)                                                         \
+  X(glows, GLOWS, p->glowing)                                                                      \
   X(films, FILMS, p->filmed)                                                                       \
   X(textured, TEXTURED, p->textured)                                                               \
   X(environment, ENVIRONMENT, scene->environment.texture != 0)                                     \
@@ -56,6 +57,7 @@
   X(tile_blocks, 0)                                                                                \
   X(chart_sides, 0)                                                                                \
   X(crystals, abbe_camera_bands_crystals(p))                                                       \
+  X(glow, abbe_camera_bands_glow(p))                                                               \
   X(receiver_root, scene->receiver_root)
 
 typedef struct abbe_shader_variant {

@@ -14,6 +14,7 @@ struct Counts {
   int tile_blocks;         // blocks of the layer of a light's tiles, a side (receiver_atlas.glsl)
   int chart_sides;         // sides of all charts, two each
   int crystals;            // the first texel of crystals' bands
+  int glow;                // the first texel of what refractors emit
   int receiver_root;       // the first node of the receivers' hierarchy
 };
 uniform Counts counts;
@@ -28,7 +29,7 @@ void copy_counts() {
                       read_count(counts.eye_bands),
                       read_count(counts.exits), read_count(counts.slots), read_count(counts.hit_stride),
                       read_count(counts.nodes), read_count(counts.map_levels), read_count(counts.tile_blocks),
-                      read_count(counts.chart_sides), read_count(counts.crystals), read_count(counts.receiver_root));
+                      read_count(counts.chart_sides), read_count(counts.crystals), read_count(counts.glow), read_count(counts.receiver_root));
 }
 
 #define counts own_counts

@@ -178,6 +178,22 @@ vec3 reflect_caustic(int surface, vec3 share, int light, mat3 reflection, vec3 r
 #include "pinhole_lookup.glsl"
 #endif
 
+#ifdef GLOWS
+uniform vec4 glow_ball[REFRACTORS];   // what glows, as a ball that is as large from all sides: centre, radius
+uniform vec3 glow_light[REFRACTORS];  // its rgb radiance
+
+// Irradiance of all of a ball that is as bright everywhere.
+vec3 glow_irradiance(vec3 p, vec3 n) {
+  vec3 sum = vec3(0);
+  for (int r = 0; r < REFRACTORS; r++) {
+    vec3 to = glow_ball[r].xyz - p;
+    float distance2 = max(dot(to, to), glow_ball[r].w * glow_ball[r].w);
+    sum += glow_light[r] * (PI * glow_ball[r].w * glow_ball[r].w / distance2 * max(dot(n, to) * inversesqrt(max(distance2, 1e-30)), 0.0));
+  }
+  return sum;
+}
+#endif
+
 struct Shading {
   vec3 direct, caustic, fill;  // radiance towards the viewer, by origin
 };
@@ -203,6 +219,9 @@ Shading shade(vec3 p, vec3 n, int surface, vec2 uv, int side) {
   OF_LIGHTS(SHINE)
 #endif
   s.fill = reflection_of(surface, share, LIGHTS) * ambient / PI;
+#ifdef GLOWS
+  s.fill += reflection_of(surface, share, LIGHTS) * glow_irradiance(p, n) / PI;
+#endif
 #ifdef ENVIRONMENT
   s.fill += reflection_of(surface, share, LIGHTS + 1) * soft_irradiance(n) / PI;
 #endif

@@ -1,10 +1,12 @@
 /* The colour of a coloured plate before a white background, straight on, against the integral of
  * Fresnel's and Beer and Lambert's laws over the spectrum: alone, and beside what makes the
- * renderer follow light from interface to interface; and of cut stones in such company, traced. */
+ * renderer follow light from interface to interface; of cut stones in such company, traced; and
+ * of glow. */
 #include "tests/gl/frame.h"
 
 #include "colorimetry/chromaticity.h"
 #include "colorimetry/difference.h"
+#include "colorimetry/observer.h"
 #include "colorimetry/weights.h"
 
 enum { FINE = 1000, SIDE = 8 };
@@ -172,4 +174,81 @@ TEST(a_cut_stone_beside_a_ball_has_its_hue) {
     assert_near(hue, right, 1.4);
     assert_near(got[1], cut[i].traced[1], 0.02 * got[1]);
   }
+}
+
+/* ---- glow ---- */
+
+enum { GLOW_SIDE = 8, GLOW_N = 3 }; /* an index of 3 / 2 */
+
+/* Excited alike at all wavelengths up to 500 nm, it emits a triangle from 600 to 620. */
+static void glow_by(double per_m, abbe_material *m) {
+  static const double nm[3] = {600, 610, 620}, photons[3] = {0, 1, 0}, below[2] = {400, 500};
+  static char name[] = "glowing";
+  const double taken[2] = {per_m, per_m};
+  *m = (abbe_material){.name = name,
+                       .min_nm = 300,
+                       .max_nm = 900,
+                       .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1}};
+  m->dispersion.c[0] = GLOW_N / 2.0;
+  m->fluorescence.yield = 0.8;
+  OK(abbe_spectrum_make(below, taken, 2, ABBE_INTERPOLATION_LINEAR, &m->fluorescence.excitation,
+                        &error));
+  OK(abbe_spectrum_make(nm, photons, 3, ABBE_INTERPOLATION_LINEAR, &m->fluorescence.emission,
+                        &error));
+}
+
+/* Y that a photon a second and area of 450 nm comes to, all of them emitted. */
+static double emitted_y(void) {
+  double sum = 0, xyz[3];
+  for (int i = 0; i < FINE; i++) {
+    const double share = (i + 0.5) / FINE, nm = 600 + 20 * share;
+    abbe_observer_xyz_of(ABBE_OBSERVER_CIE_1931, nm, xyz);
+    sum += (2 - fabs(4 * share - 2)) / FINE * xyz[1] / nm;
+  }
+  abbe_observer_xyz_of(ABBE_OBSERVER_CIE_1931, 450, xyz);
+  return sum * 450 / xyz[1];
+}
+
+/* Light of 1 W/m2 meets the plate straight on, and so does the camera: its path goes to and fro,
+ * as the light does, and comes to all of the glow. */
+static void hold_glow(double depth, const char *beside) {
+  const double thickness_m = 0.02, r = pow((GLOW_N - 2.0) / (GLOW_N + 2), 2), e = exp(-depth);
+  const double taken = (1 - r) * (1 - e) / (1 - r * e);
+  const double wanted = 0.8 * taken * emitted_y() / (4 * ABBE_PI) / (GLOW_N * GLOW_N / 4.0);
+  const abbe_render_desc desc = {.width = GLOW_SIDE,
+                                 .height = GLOW_SIDE,
+                                 .wavelengths = 7,
+                                 .min_nm = 440,
+                                 .max_nm = 640,
+                                 .supersample = 1,
+                                 .space = ABBE_RGB_SPACE_XYZ};
+  abbe_material material;
+  double got = 0;
+  OWNED(abbe_scene, scene) = scene_of(
+      printed("camera: {eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 2}\n"
+              "lights:\n"
+              "- {name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1,\n"
+              "   illuminant: 450nm}\n"
+              "objects:\n"
+              "- {name: plate, shape: box, size: [0.2, 0.2, %g], material: n-bk7}\n%s"
+              "- {name: corner, shape: rectangle, width: 0.002, height: 0.002, reflectance: 0,\n"
+              "   transform: [{translate: [0.03, 0.03, -1]}]}\n",
+              thickness_m, beside));
+  glow_by(depth / thickness_m, &material);
+  scene.object[0].material = &material;
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+  OWNED(abbe_image, image) = picture_of(renderer);
+  for (size_t i = 0; i < GLOW_SIDE * GLOW_SIDE; i++)
+    got += (double)image.data[i * image.channels + 1] / (GLOW_SIDE * GLOW_SIDE);
+  print_message("a depth of %g: Y of %.4f, %.4f by the closed form\n", depth, got, wanted);
+  assert_near(got / wanted, 1, 0.02);
+  abbe_spectrum_free(material.fluorescence.excitation);
+  abbe_spectrum_free(material.fluorescence.emission);
+}
+
+TEST(a_plate_glows) {
+  hold_glow(0.2, "");
+  hold_glow(4, "");
+  hold_glow(0.2, BESIDE_GLASS);
+  hold_glow(4, BESIDE_GOLD);
 }

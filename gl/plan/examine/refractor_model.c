@@ -99,6 +99,8 @@ static const char *why_in_turn(const abbe_scene *scene, abbe_plan *plan) {
   const bool exact = only->exact.kind == ABBE_EXACT_SPHERE || only->exact.kind == ABBE_EXACT_CONVEX;
   if (!exact && plan->desc.transport == ABBE_TRANSPORT_PINHOLE)
     return "light of all around is followed from every receiver through a mesh";
+  if (!exact && abbe_material_is_fluorescent(only->material))
+    return "light that makes a mesh glow comes from all around";
   if (!exact && !is_convex(&only->mesh, &plan->shape)) return "the refractor is not convex";
   if (abbe_reach_is_entered(scene, only)) return "a receiver may reach into the refractor";
   if (only->medium != NULL) return "what is in the refractor scatters light";

@@ -220,18 +220,16 @@ static void note_pleochroism(const abbe_material *material, abbe_plan *plan) {
                  material->name, MM, o[0], o[1], o[2], e[0], e[1], e[2], p.largest);
 }
 
-/* What glows is drawn without. */
 static void note_fluorescence(const abbe_material *m, double low, double high, abbe_plan *plan) {
   const abbe_fluorescence *f = &m->fluorescence;
   if (!abbe_material_is_fluorescent(m)) return;
   const size_t last = abbe_spectrum_count(f->emission) - 1;
   const double *nm = abbe_spectrum_lambda_nm(f->emission);
-  abbe_plan_note(
-      plan,
-      "%s: fluorescent; of photons that excite it %.3g %% come back at %.4g to %.4g nm, "
-      "%.3g %% of these within the range; it is drawn without its glow, and 'abbe trace' "
-      "has it",
-      m->name, 100 * f->yield, nm[0], nm[last], 100 * abbe_material_emission(m, low, high));
+  abbe_plan_note(plan,
+                 "%s: fluorescent; of photons that excite it %.3g %% come back at %.4g to %.4g nm, "
+                 "%.3g %% of these within the range",
+                 m->name, 100 * f->yield, nm[0], nm[last],
+                 100 * abbe_material_emission(m, low, high));
 }
 
 /* The first object of the material, of those that the plan does not have yet. */
@@ -259,6 +257,7 @@ abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_mate
   if (range.most_per_m > 0) plan->absorbing = true;
   if (abbe_material_is_crystal(material)) plan->crystals = true;
   if (abbe_material_is_pleochroic(material)) plan->pleochroic = true;
+  if (abbe_material_is_fluorescent(material)) plan->glowing = true;
   bool noted = false;
   for (size_t i = 0; i < plan->refractor_count && !noted; i++)
     noted = scene->object[plan->refractor_object[i]].material == material;
@@ -343,7 +342,8 @@ void abbe_spectral_needs_count(const abbe_scene *scene, abbe_plan *plan) {
   if (!asked) plan->desc.wavelengths = !varies ? 1 : own > 0 ? own : ABBE_PLAN_WAVELENGTHS;
   double line[ABBE_PLAN_MOST_LINES];
   plan->lines = 0;
-  if (varies && !asked && own == 0 && !abbe_method_of(plan->desc.profile)->own_passes)
+  if (varies && !asked && own == 0 && !plan->glowing &&
+      !abbe_method_of(plan->desc.profile)->own_passes)
     plan->lines = abbe_spectral_needs_lines(scene, plan->desc.min_nm, plan->desc.max_nm, line);
   if (plan->lines > 0) plan->desc.wavelengths = plan->lines;
   if (abbe_plan_no_refraction(plan) != NULL) plan->desc.wavelengths = 1, plan->lines = 0;

@@ -32,6 +32,7 @@
   X(GAP_FILL, LIGHT, "light: gap fill", p->fills)                                                  \
   X(PINHOLES, LIGHT, "light: pinholes", has_pinholes(p))                                           \
   X(SHAFTS, LIGHT, "light: shafts", p->shaft_count > 0)                                            \
+  X(EYE_GLOW, EYE, "eye: glow", p->glowing)                                                        \
   X(EYE_RECEIVERS, EYE, "eye: receivers", true)                                                    \
   X(EYE_FRONT, EYE, "eye: refractor front", p->camera_sees_refractor)                              \
   X(EYE_BACK, EYE, "eye: refractor back", p->camera_sees_refractor && p->draw_back)                \
@@ -145,6 +146,10 @@ typedef struct abbe_plan_shaft {
 } abbe_plan_shaft;
 
 #define ABBE_PLAN_MOST_SHAFTS 8
+/* Refractors of a scene in which some may glow. */
+#define ABBE_PLAN_MOST_GLOWING 32
+/* Cells of their glow, along each axis. */
+#define ABBE_PLAN_GLOW_CELLS 12
 
 /* Where band k begins, nm. */
 double abbe_plan_haze_edge(const abbe_render_desc *desc, int k);
@@ -213,6 +218,7 @@ typedef struct abbe_plan {
   bool filmed;     /* some refractor has films on faces that are drawn */
   bool crystals;   /* it has several indices: the camera follows both waves */
   bool pleochroic; /* it attenuates by the direction of the light's field */
+  bool glowing;    /* it is fluorescent, and its glow is drawn */
   bool tinted_air; /* the air's absorption or scattering varies */
 
   abbe_plan_inside inside;

@@ -34,9 +34,15 @@ size_t abbe_camera_bands_crystals(const abbe_plan *plan) {
   return bands_apart(plan) * (ABBE_BAND_COLOUR_TEXELS + (plan->band_parts ? parts : 0));
 }
 
-size_t abbe_camera_bands_texels(const abbe_plan *plan) {
+size_t abbe_camera_bands_glow(const abbe_plan *plan) {
   const size_t crystals = plan->crystals ? plan->refractor_count * (2 + bands_apart(plan)) : 0;
   return abbe_camera_bands_crystals(plan) + crystals;
+}
+
+size_t abbe_camera_bands_texels(const abbe_plan *plan) {
+  const size_t glow =
+      plan->glowing ? plan->refractor_count * bands_apart(plan) * ABBE_PART_LIGHT_TEXELS : 0;
+  return abbe_camera_bands_glow(plan) + glow;
 }
 
 bool abbe_camera_bands_refine(const abbe_plan *plan) {
@@ -63,6 +69,7 @@ typedef struct band_set {
   bool lifts;   /* else colours are not separated */
   size_t *step; /* [wavelengths + 1] */
   abbe_band_steps steps;
+  double (*glow)[3];   /* [refractors][steps] XYZ that they emit; NULL: none is fluorescent */
   double *share;       /* [steps] of a band that is made */
   unsigned char *part; /* [steps] */
 } band_set;
@@ -123,6 +130,27 @@ static void lift(const abbe_scene *scene, band_set *s) {
     abbe_upsampling_band(&all, ABBE_RGB_SPACE_XYZ, s->edge_nm[i], s->edge_nm[i + 1], s->colour[i]);
 }
 
+/* What refractors emit in each step, of a photon. */
+static abbe_result fill_glow(const abbe_scene *scene, band_set *s, abbe_error *error) {
+  const size_t count = s->steps.count;
+  if (!s->plan->glowing) return ABBE_OK;
+  s->glow = calloc(s->plan->refractor_count * count + 1, sizeof *s->glow);
+  if (s->glow == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
+  for (size_t r = 0; r < s->plan->refractor_count; r++) {
+    const abbe_material *m = scene->object[s->plan->refractor_object[r]].material;
+    if (s->plan->mirror[r] || !abbe_material_is_fluorescent(m)) continue;
+    for (size_t i = 0; i < s->tables->all.count; i++)
+      for (size_t k = s->step[i]; k < s->step[i + 1]; k++) {
+        const double width = (s->edge_nm[i + 1] - s->edge_nm[i]) / (double)steps_of(s, i);
+        const double from = s->edge_nm[i] + width * (double)(k - s->step[i]);
+        const double photons = abbe_material_emission(m, from, from + width);
+        abbe_observer_xyz_of(s->plan->desc.observer, from + width / 2, s->glow[r * count + k]);
+        for (int c = 0; c < 3; c++) s->glow[r * count + k][c] *= photons / (from + width / 2);
+      }
+  }
+  return ABBE_OK;
+}
+
 static abbe_result begin(const abbe_scene *scene, const abbe_weights_range *light, int set,
                          band_set *s, abbe_error *error) {
   const size_t count = s->tables->all.count;
@@ -155,7 +183,7 @@ static abbe_result begin(const abbe_scene *scene, const abbe_weights_range *ligh
   for (size_t i = 0; i < s->step[count]; i++)
     for (int c = 0; c < 3; c++)
       s->steps.xyz[i][c] = of_white(s->steps.xyz[i][c], white[c], s->step[count]);
-  return ABBE_OK;
+  return fill_glow(scene, s, error);
 }
 
 static void end(band_set *s) {
@@ -164,6 +192,7 @@ static void end(band_set *s) {
   free(s->weight);
   free(s->colour);
   free(s->step);
+  free(s->glow);
   free(s->share);
   free(s->part);
   abbe_band_steps_free(&s->steps);
@@ -300,9 +329,14 @@ static double even_surface(const band_set *s, const abbe_scene *scene, size_t r)
          abbe_medium_scattering(object->medium, s->lambda_nm[0]);
 }
 
-/* The parts of a band: texels of its surfaces, `apart` from one to the next, and of its light. */
+static void store_part(const double xyz[3], unsigned p, float (*light)[4]) {
+  for (unsigned c = 0; c < 3; c++) light[2 * c + p / 4][p % 4] = (float)xyz[c];
+}
+
+/* The parts of a band: texels of its surfaces, `apart` from one to the next, of its light, and of
+ * their glow. */
 static void fill_parts(band_set *s, const level_band *b, abbe_camera_band *band, size_t apart,
-                       float (*texel)[4], float (*light)[4]) {
+                       float (*texel)[4], float (*light)[4], float (*glow)[4]) {
   size_t last, first = bands_of(b, &last);
   const size_t count = s->tables->all.count;
   const size_t from = s->step[least(first * b->joined, count)];
@@ -321,6 +355,13 @@ static void fill_parts(band_set *s, const level_band *b, abbe_camera_band *band,
   for (unsigned p = 0; p < ABBE_BAND_PARTS; p++) {
     const abbe_band_share one = {from, to, s->share, s->part, p};
     abbe_band_share_xyz(&s->steps, &one, xyz[p]);
+    for (size_t r = 0; r < refractors && glow != NULL; r++) {
+      abbe_band_steps emitted = s->steps;
+      emitted.xyz = s->glow + r * s->steps.count;
+      double glow_xyz[3];
+      abbe_band_share_xyz(&emitted, &one, glow_xyz);
+      store_part(glow_xyz, p, glow + ABBE_PART_LIGHT_TEXELS * r * apart);
+    }
     for (size_t r = 0; r < s->steps.surfaces; r++) {
       const double own = abbe_band_share_depth(&s->steps, &one, r);
       const double depth = own < 0 ? abbe_band_share_depth(&s->steps, &whole, r) : own;
@@ -331,8 +372,7 @@ static void fill_parts(band_set *s, const level_band *b, abbe_camera_band *band,
     }
   }
   abbe_band_parts_fit(&s->steps, &whole, xyz);
-  for (unsigned p = 0; p < ABBE_BAND_PARTS; p++)
-    for (unsigned c = 0; c < 3; c++) light[2 * c + p / 4][p % 4] = (float)xyz[p][c];
+  for (unsigned p = 0; p < ABBE_BAND_PARTS; p++) store_part(xyz[p], p, light);
 }
 
 /* Where a set's bands are written: of the first surface, and from one to the next. */
@@ -342,6 +382,7 @@ typedef struct band_place {
   float (*colour)[4];
   float (*texel)[4], (*light)[4]; /* NULL: no parts */
   float (*crystal)[4];            /* NULL: none is one */
+  float (*glow)[4];               /* NULL: none glows */
 } band_place;
 
 static abbe_result fill_level(band_set *s, const abbe_scene *scene, level_band level,
@@ -360,7 +401,8 @@ static abbe_result fill_level(band_set *s, const abbe_scene *scene, level_band l
     fill_colour(s, &level, band->weight_n, to->colour + ABBE_BAND_COLOUR_TEXELS * level.i);
     if (result == ABBE_OK && to->texel != NULL)
       fill_parts(s, &level, band, to->apart, to->texel + ABBE_PART_TEXELS * level.i,
-                 to->light + ABBE_PART_LIGHT_TEXELS * level.i);
+                 to->light + ABBE_PART_LIGHT_TEXELS * level.i,
+                 to->glow != NULL ? to->glow + ABBE_PART_LIGHT_TEXELS * level.i : NULL);
   }
   return result;
 }
@@ -377,6 +419,7 @@ static abbe_result fill_set(band_set *s, const abbe_scene *scene, bool shares, b
     if (to.texel != NULL) to.texel += ABBE_PART_TEXELS * level.count;
     if (to.texel != NULL) to.light += ABBE_PART_LIGHT_TEXELS * level.count;
     if (to.crystal != NULL) to.crystal += level.count;
+    if (to.glow != NULL) to.glow += ABBE_PART_LIGHT_TEXELS * level.count;
     level.count = (level.count + 1) / 2;
     level.joined *= 2;
     result = fill_level(s, scene, level, &to, error);
@@ -410,6 +453,8 @@ abbe_result abbe_camera_bands_fill(const abbe_scene *scene, const abbe_plan *pla
     if (plan->crystals)
       to.crystal = texel + abbe_camera_bands_crystals(plan) + 2 * plan->refractor_count +
                    (size_t)set * count;
+    if (plan->glowing)
+      to.glow = texel + abbe_camera_bands_glow(plan) + ABBE_PART_LIGHT_TEXELS * (size_t)set * count;
     result = begin(scene, &light, set, &s, error);
     if (result == ABBE_OK) result = fill_set(&s, scene, set > 0, to, error);
     end(&s);

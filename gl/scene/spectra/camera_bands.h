@@ -37,6 +37,10 @@ size_t abbe_camera_bands_texels(const abbe_plan *plan);
  * and z's, and the sine and cosine of the angle between an optic axis and z, which lies between x
  * and z (crystals.glsl). */
 size_t abbe_camera_bands_crystals(const abbe_plan *plan);
+/* The first texel of what refractors emit by fluorescence, of a plan in which some glow:
+ * [refractors][sets][count][ABBE_PART_LIGHT_TEXELS], X, Y and Z of a photon a unit of the lights'
+ * power, shared out over the parts; others emit none. */
+size_t abbe_camera_bands_glow(const abbe_plan *plan);
 
 /* So many wavelengths that bands are joined first, and come back where they differ. */
 bool abbe_camera_bands_refine(const abbe_plan *plan);
@@ -48,7 +52,7 @@ bool abbe_camera_bands_interleave(const abbe_plan *plan);
 /* out: [refractors][ABBE_CAMERA_BAND_SETS][abbe_camera_bands_count]; texel, zeroed: as many as
  * abbe_camera_bands_texels says, of [sets][count][ABBE_BAND_COLOUR_TEXELS], then of
  * [refractors][sets][count][ABBE_PART_TEXELS] and of [sets][count][ABBE_PART_LIGHT_TEXELS], and
- * the parts along x, y and z of a plan with pleochroism, as those before. Errors of
+ * the parts along x, y and z of a plan with pleochroism, as those before; crystals and glow. Errors of
  * abbe_spectral_tables_make. */
 abbe_result abbe_camera_bands_fill(const abbe_scene *scene, const abbe_plan *plan,
                                    const abbe_spectral_tables *tables, abbe_camera_band *out,

@@ -87,6 +87,10 @@ Depth wave_attenuation(Crystal c, int r, int wave, vec3 k) {
 }
 #endif
 
+#ifdef GLOWS
+#include "glow.glsl"
+#endif
+
 // What a path shows in all, of what it has shown: by the weights of that and of what is left, which shows the same.
 vec3 tail_of(vec3 shown, vec3 left) { return 1.0 + left / max(shown, 1e-30); }
 

@@ -33,6 +33,7 @@ TEST(fluorescence_is_noted) {
   assert_true(is_noted(&plan,
                        "diamond-fluorescent: fluorescent; of photons that excite it 30 % come "
                        "back at 415.2 to 550 nm, 100 % of these within the range"));
+  assert_true(plan.glowing && abbe_plan_runs(&plan, ABBE_PASS_EYE_GLOW, 0));
 }
 
 /* What a film reflects, from both sides, beside the bare face. */

@@ -111,6 +111,7 @@ static const char *const texts[] = {
     [ABBE_PASS_GAP_FILL] = "light: gap fill",
     [ABBE_PASS_PINHOLES] = "light: pinholes",
     [ABBE_PASS_SHAFTS] = "light: shafts",
+    [ABBE_PASS_EYE_GLOW] = "eye: glow",
     [ABBE_PASS_EYE_RECEIVERS] = "eye: receivers",
     [ABBE_PASS_EYE_FRONT] = "eye: refractor front",
     [ABBE_PASS_EYE_BACK] = "eye: refractor back",
