@@ -88,6 +88,14 @@ abbe_result abbe_renderer_baseline(abbe_renderer *renderer, double *ms, abbe_err
 abbe_result abbe_renderer_read(abbe_renderer *renderer, bool aovs, abbe_image *out,
                                abbe_error *error);
 
+/* The same of a camera with an aperture as through that: colours are the mean of so many frames as
+ * the request's `lens` says, from places evenly spread over the pupil; AOVs are those of its
+ * middle. scene and desc: those that the renderer has; then no frame is drawn, and the light stays.
+ * Errors of abbe_renderer_change and abbe_renderer_frame too. */
+abbe_result abbe_renderer_read_blurred(abbe_renderer *renderer, const abbe_scene *scene,
+                                       const abbe_render_desc *desc, abbe_render_progress progress,
+                                       void *user, abbe_image *out, abbe_error *error);
+
 /* A light's spectral map: channels X, Y, Z, flux a texel in W, with its layout and the light's name
  * in its attributes (abbe_map_layout_read). Of a light with a cube of maps only where the request
  * gives one layout for all, else ABBE_UNSUPPORTED. filled: after the gap fill, where the fill is a

@@ -303,6 +303,8 @@ static uint64_t mix_eye(uint64_t h, const abbe_scene *scene, const abbe_plan *pl
   MIX(h, scene->camera.target);
   MIX(h, scene->camera.up);
   MIX(h, scene->camera.fov_y_rad);
+  MIX(h, scene->camera.aperture);
+  MIX(h, scene->camera.focus);
   MIX(h, d->width);
   MIX(h, d->height);
   MIX(h, d->supersample);
@@ -312,6 +314,7 @@ static uint64_t mix_eye(uint64_t h, const abbe_scene *scene, const abbe_plan *pl
   MIX(h, d->adaptive);
   MIX(h, d->receiver_samples);
   MIX(h, d->sample_shift);
+  MIX(h, d->lens_place);
   MIX(h, d->aovs);
   MIX(h, plan->textured);
   MIX(h, plan->receiver_colours);

@@ -1,9 +1,12 @@
 #include "gl/renderer_state.h"
 
 #include "base/clock.h"
+#include "base/maths.h"
 #include "gl/caustics/caustics.h"
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static abbe_result check_drawn(const abbe_renderer *r, abbe_error *error) {
   if (r->seen) return ABBE_OK;
@@ -162,6 +165,49 @@ abbe_result abbe_renderer_read(abbe_renderer *r, bool aovs, abbe_image *out, abb
   *out = (abbe_image){0};
   ABBE_TRY(abbe_renderer_enter(r->context, error));
   return abbe_renderer_leave(r->context, read_picture(r, aovs, out, error));
+}
+
+/* Evenly spread over the disk: a spiral by the golden angle [Vogel1979]. */
+static void place_on_lens(size_t i, size_t count, double out[2]) {
+  const double far = sqrt(((double)i + 0.5) / (double)count);
+  const double turn = ABBE_PI * (3 - sqrt(5)) * (double)i;
+  out[0] = far * cos(turn);
+  out[1] = far * sin(turn);
+}
+
+/* Adds a share of the picture's first three channels, its colours. */
+static void add_colours(const abbe_image *image, double share, abbe_image *sum) {
+  for (size_t i = 0; i < sum->width * sum->height; i++)
+    for (size_t c = 0; c < 3; c++)
+      sum->data[i * sum->channels + c] +=
+          (float)(share * (double)image->data[i * image->channels + c]);
+}
+
+abbe_result abbe_renderer_read_blurred(abbe_renderer *r, const abbe_scene *scene,
+                                       const abbe_render_desc *desc, abbe_render_progress progress,
+                                       void *user, abbe_image *out, abbe_error *error) {
+  const size_t count = r->plan.desc.lens;
+  abbe_render_desc own = *desc;
+  ABBE_TRY(abbe_renderer_read(r, r->plan.desc.aovs, out, error));
+  if (!(scene->camera.aperture > 0) || count < 2 || r->method != NULL) return ABBE_OK;
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < out->width * out->height; i++)
+    memset(out->data + i * out->channels, 0, 3 * sizeof *out->data);
+  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+    abbe_image image = {0};
+    place_on_lens(i, count, own.lens_place);
+    result = abbe_renderer_change(r, scene, &own, error);
+    if (result == ABBE_OK) result = abbe_renderer_frame(r, NULL, NULL, NULL, error);
+    if (result == ABBE_OK) result = abbe_renderer_read(r, false, &image, error);
+    if (result == ABBE_OK) add_colours(&image, 1 / (double)count, out);
+    abbe_image_free(&image);
+    if (result == ABBE_OK && progress != NULL && !progress(user, (double)(i + 1) / (double)count))
+      result = abbe_error_set(error, ABBE_CANCELLED, "stopped after %zu of %zu places on the lens",
+                              i + 1, count);
+  }
+  if (result == ABBE_OK) result = abbe_renderer_change(r, scene, desc, error);
+  if (result != ABBE_OK) abbe_image_free(out);
+  return result;
 }
 
 abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, abbe_image *out,

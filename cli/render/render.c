@@ -202,13 +202,17 @@ static abbe_result trace(request *q, const abbe_scene *scene, abbe_error *error)
 }
 
 /* The frame that the renderer holds, as files. */
-static abbe_result write_picture(request *q, const abbe_scene *scene, abbe_context *context,
-                                 abbe_renderer *renderer, abbe_error_bars *bars,
-                                 abbe_error *error) {
+static abbe_result write_picture(request *q, const abbe_scene *scene, const abbe_render_desc *desc,
+                                 abbe_context *context, abbe_renderer *renderer,
+                                 abbe_error_bars *bars, abbe_error *error) {
   abbe_image image = {0};
   abbe_scene sharp = *scene; /* as the frame is, and alpha of it */
   if (q->screen.alpha) sharp.camera.aperture = sharp.camera.focus = 0;
-  abbe_result result = abbe_renderer_read(renderer, q->aovs, &image, error);
+  abbe_progress bar;
+  abbe_progress_begin(&bar, "lens", q->quiet || !(sharp.camera.aperture > 0));
+  abbe_result result =
+      abbe_renderer_read_blurred(renderer, &sharp, desc, abbe_progress_update, &bar, &image, error);
+  abbe_progress_end(&bar);
   if (result == ABBE_OK) result = abbe_render_check_frame(q, &sharp, renderer, &image, error);
   if (result == ABBE_OK && !q->picture.traced_instead)
     result = abbe_render_annotate(q, renderer, context, &image, error);
@@ -262,7 +266,7 @@ static abbe_result render(request *q, const abbe_scene *scene, abbe_context *con
       result = run_frames(q, renderer, &statistics, error);
   }
   if (result == ABBE_OK && q->series.count == 0)
-    result = write_picture(q, scene, context, renderer, &bars, error);
+    result = write_picture(q, scene, &desc, context, renderer, &bars, error);
   if (result == ABBE_OK && q->series.count == 0)
     result = abbe_render_check_frame_in_time(q, scene, renderer, error);
   if (result == ABBE_OK) result = abbe_render_write_stats(q, &statistics, &bars, context, error);
@@ -298,6 +302,7 @@ static const char *renderers_own(const request *q) {
          : d->supersample > 0                   ? "--samples"
          : d->upsample > 0                      ? "--upsample"
          : d->adaptive > 0                      ? "--adaptive"
+         : d->lens > 0                          ? "--lens"
          : d->receiver_samples > 0              ? "--receiver-samples"
          : d->environment_lights > 0            ? "--environment-lights"
          : d->light_points > 0                  ? "--light-points"

@@ -212,6 +212,14 @@ static void come_near(const abbe_scene *scene, const abbe_render_desc *desc, abb
   view->near = fmin(view->near, fmax(0.25 * gap, least * view->far));
 }
 
+/* What is sharp stays where it is in the picture. */
+static void see_from_lens(const abbe_camera *camera, const double place[2], abbe_view *view) {
+  if (!(camera->aperture > 0)) return;
+  const double right = 0.5 * camera->aperture * place[0], up = 0.5 * camera->aperture * place[1];
+  for (int k = 0; k < 3; k++) view->origin[k] += right * view->right[k] + up * view->up[k];
+  for (int k = 0; k < 4; k++) view->window[k] -= (k < 2 ? right : up) / camera->focus;
+}
+
 void abbe_camera_view_fit(const abbe_scene *scene, const abbe_render_desc *desc,
                           abbe_camera_view *out) {
   const size_t pixels[2] = {desc->width, desc->height};
@@ -246,4 +254,5 @@ void abbe_camera_view_fit(const abbe_scene *scene, const abbe_render_desc *desc,
   const double window[4] = {left, left + wide * (double)out->samples[0], bottom,
                             bottom + high * (double)out->samples[1]};
   memcpy(out->view.window, window, sizeof window);
+  see_from_lens(camera, desc->lens_place, &out->view);
 }

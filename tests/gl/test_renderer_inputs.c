@@ -102,6 +102,7 @@ static void give_texture(edited *e) {
   X("the picture's height", e->desc.height = 40, EYE)                                              \
   X("samples", e->desc.supersample = 3, EYE)                                                       \
   X("adaptive", e->desc.adaptive = 2, EYE)                                                         \
+  X("the lens", (e->scene.camera.aperture = 0.01, e->scene.camera.focus = 1), EYE)                 \
   X("their shift", e->desc.sample_shift[1] = 0.25, EYE)                                            \
   X("aovs", e->desc.aovs = true, EYE)                                                              \
   X("the space", e->desc.space = ABBE_RGB_SPACE_REC709, SURFACES | POWERS)                         \

@@ -490,7 +490,10 @@ void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan) {
   }
   note_polarisation(scene, plan);
   if (scene->camera.aperture > 0)
-    abbe_plan_note(plan, "the camera's aperture is left out: all is sharp; 'abbe trace' has it");
+    abbe_plan_note(plan,
+                   "the camera has an aperture: a picture is the mean of %zu from places on it; "
+                   "'abbe view' is sharp",
+                   plan->desc.lens);
   if (plan->camera_sees_refractor && !shine_alike(scene, plan->desc.min_nm, plan->desc.max_nm))
     abbe_plan_note(plan, "through refractors, colours are split by the first light's illuminant");
 }

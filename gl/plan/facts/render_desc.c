@@ -68,6 +68,7 @@ static void fill_in_defaults(size_t width, size_t height, abbe_render_desc *d) {
   const bool one = m->own_passes || d->upsample > 1;
   if (d->supersample == 0) d->supersample = one ? 1 : ABBE_PLAN_SAMPLES;
   if (d->adaptive == 0) d->adaptive = one ? 1 : ABBE_PLAN_ADAPTIVE;
+  if (d->lens == 0) d->lens = ABBE_PLAN_LENS;
   if (d->environment_lights == 0) d->environment_lights = ABBE_PLAN_ENVIRONMENT_LIGHTS;
   if (d->light_points == 0) d->light_points = ABBE_PLAN_LIGHT_POINTS;
   if (d->energy_share == 0) d->energy_share = ABBE_PLAN_SHARE;
@@ -104,6 +105,10 @@ static abbe_result check_numbers(const abbe_render_desc *d, abbe_error *error) {
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "the %s are shifted by %g of their distance; it may be -0.5 to 0.5",
                             k < 2 ? "photons" : "samples", shift[k]);
+  if (!(hypot(d->lens_place[0], d->lens_place[1]) <= 1))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a place on the lens is %g, %g of its radius; it may be within 1",
+                          d->lens_place[0], d->lens_place[1]);
   return ABBE_OK;
 }
 
@@ -336,6 +341,10 @@ const abbe_render_setting abbe_render_settings[] = {
     {COUNT(adaptive, 1, ABBE_RENDER_MAX_ADAPTIVE), .option = "adaptive",
      .what = "the adaptive sampling", .default_ = "4; thesis, and with --upsample, 1",
      .help = "N x N rays for a sample of a receiver where its light bends"},
+    {COUNT(lens, 1, ABBE_RENDER_MAX_LENS), .option = "lens", .aside = true,
+     .what = "the number of places on the lens", .default_ = "32",
+     .help =
+         "of a camera with an aperture, places on it that the picture is seen from; 1 is sharp"},
     {COUNT(receiver_samples, 1, 4), .option = "receiver-samples", .aside = true,
      .default_ = "as --samples; 1 of a volume with --adaptive above 1",
      .help = "samples of receivers a pixel side, as --samples or one"},

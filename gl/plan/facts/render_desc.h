@@ -48,7 +48,8 @@ typedef enum abbe_coarse { ABBE_COARSE_NONE, ABBE_COARSE_EYE, ABBE_COARSE_ALL } 
 #define ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS 16
 #define ABBE_RENDER_MAX_LIGHT_POINTS 16
 #define ABBE_RENDER_MAX_CLUSTERS 1000000
-#define ABBE_RENDER_MAX_HISTORY 4   /* frames */
+#define ABBE_RENDER_MAX_HISTORY 4 /* frames */
+#define ABBE_RENDER_MAX_LENS 4096
 #define ABBE_RENDER_MAX_LOW_PASS 32 /* texels */
 #define ABBE_RENDER_CUBE_FACES 6
 
@@ -61,6 +62,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 #define ABBE_PLAN_MAP 1024
 #define ABBE_PLAN_SAMPLES 2
 #define ABBE_PLAN_ADAPTIVE 4
+#define ABBE_PLAN_LENS 32
 #define ABBE_PLAN_ENVIRONMENT_LIGHTS 4
 #define ABBE_PLAN_LIGHT_POINTS 8
 #define ABBE_PLAN_PINHOLES 256
@@ -154,6 +156,11 @@ typedef struct abbe_render_desc {
    * to 0.5: other pictures that the same request could have given (gl/accuracy/error_bars.h).
    * Pinholes are other ones for each shift of the grid. */
   double photon_shift[2], sample_shift[2];
+  /* Places on the pupil of a camera with an aperture whose pictures abbe_renderer_read_blurred
+   * takes the mean of, 1 to ABBE_RENDER_MAX_LENS, 0: 32; and the one that a frame is seen from, in
+   * the pupil's radii to the right and up: 0, 0 is its middle. */
+  size_t lens;
+  double lens_place[2];
   bool everything;               /* all on, to measure what the plan saves (gl/plan/plan.h) */
   bool aovs;                     /* keep direct and caustic light of the receivers apart as well */
   abbe_render_progress progress; /* while the renderer is made: photons are traced once to fit */

@@ -157,3 +157,30 @@ TEST(a_shift_moves_the_window) {
   assert_near(camera.view.window[2], -1 - 0.25 * sample, 1e-12);
   assert_near(camera.view.window[3], 1 - 0.25 * sample, 1e-12);
 }
+
+/* From all of the pupil what is in focus is at one place of the picture; what is twice as far moves
+ * there by half of the pupil, seen from the focus. */
+TEST(a_place_on_the_lens_keeps_what_is_in_focus) {
+  static const double place[][2] = {{1, 0}, {0, -1}, {-0.6, 0.8}};
+  abbe_scene scene = {.camera = {.target = {0, 1, 0},
+                                 .up = {0, 0, 1},
+                                 .fov_y_rad = acos(0),
+                                 .aperture = 0.1,
+                                 .focus = 2}};
+  abbe_camera_view camera;
+  for (size_t i = 0; i < sizeof place / sizeof *place; i++) {
+    const abbe_render_desc desc = {.width = 50,
+                                   .height = 50,
+                                   .supersample = 1,
+                                   .upsample = 1,
+                                   .lens_place = {place[i][0], place[i][1]}};
+    double uvz[3];
+    abbe_camera_view_fit(&scene, &desc, &camera);
+    assert_true(abbe_view_project(&camera.view, (const double[3]){0.3, 2, -0.4}, uvz));
+    assert_near(uvz[0], 0.5 + 0.15 / 2, 1e-12);
+    assert_near(uvz[1], 0.5 - 0.2 / 2, 1e-12);
+    assert_true(abbe_view_project(&camera.view, (const double[3]){0, 4, 0}, uvz));
+    assert_near(uvz[0], 0.5 + 0.05 * place[i][0] * (0.5 - 0.25) / 2, 1e-12);
+    assert_near(uvz[1], 0.5 + 0.05 * place[i][1] * (0.5 - 0.25) / 2, 1e-12);
+  }
+}

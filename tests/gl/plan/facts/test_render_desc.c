@@ -120,6 +120,7 @@ TEST(limits_are_kept) {
       {{.energy_share = NAN}, "nan"},
       {{.photon_shift = {0, 0.6}}, "photons are shifted by 0.6"},
       {{.sample_shift = {NAN, 0}}, "samples are shifted by nan"},
+      {{.lens_place = {0.8, 0.8}}, "a place on the lens is 0.8, 0.8"},
       {{.model = ABBE_MODEL_COUNT}, "model 'unknown'"},
       {{.profile = ABBE_PROFILE_THESIS, .model = ABBE_MODEL_SPHERE}, "model 'sphere'"},
       {{.fill = ABBE_FILL_SMEAR}, "'smear'"},
@@ -161,5 +162,5 @@ TEST(a_request_is_held_to_every_limit) {
     REFUSED(ABBE_INVALID_ARGUMENT, s->what, abbe_render_desc_resolve(&desc, 8, 8, &out, &error));
     held++;
   }
-  assert_int_equal(held, 18);
+  assert_int_equal(held, 19);
 }
