@@ -237,8 +237,8 @@ SIDE_BY_SIDE static void share_parts(batch *b, const float *lean, int c) {
     const int32_t ix = whole_of(x), iy = whole_of(y), last = b->side[k] - 1;
     const float fx = x - (float)ix, fy = y - (float)iy, gx = 1 - fx, gy = 1 - fy;
     const int32_t lx = ix < 0 ? 0 : ix, ly = iy < 0 ? 0 : iy;
-    b->right[c][k] = (ix >= 0) & (ix < last) ? 1 : 0;
-    b->above[c][k] = (iy >= 0) & (iy < last) ? last + 1 : 0;
+    b->right[c][k] = ((ix >= 0) & (ix < last)) ? 1 : 0;
+    b->above[c][k] = ((iy >= 0) & (iy < last)) ? last + 1 : 0;
     b->texel[c][k] = b->first[k] + ly * (last + 1) + lx;
     const float leans = clamp(lean[k], -least(fx * fy, gx * gy), least(fx * gy, gx * fy));
     const float units = (float)b->units[c][k];

@@ -104,9 +104,9 @@ static void list_photons(abbe_plan *plan) {
   const abbe_method_facts *method = abbe_method_of(plan->desc.profile);
   const size_t least = abbe_plan_least_wavelengths(plan), most = plan->desc.wavelengths;
   if (!plan->caustics) {
-    abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT, no_photons(plan));
-    abbe_plan_add(plan, ABBE_PASS_PHOTONS, no_photons(plan));
-    abbe_plan_add(plan, ABBE_PASS_SPECTRAL_MAP, no_photons(plan));
+    abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT, "%s", no_photons(plan));
+    abbe_plan_add(plan, ABBE_PASS_PHOTONS, "%s", no_photons(plan));
+    abbe_plan_add(plan, ABBE_PASS_SPECTRAL_MAP, "%s", no_photons(plan));
     return;
   }
   if (method->pixel != NULL)

@@ -8,12 +8,12 @@
 static void point_to_vertices(const abbe_gpu_scene *scene) {
   static const struct {
     GLint size;
-    size_t offset;
+    uintptr_t offset;
   } attribute[3] = {{3, 0}, {3, 12}, {2, 24}};
   for (GLuint k = 0; k < 3; k++) {
     scene->gpu->gl->EnableVertexAttribArray(k);
     scene->gpu->gl->VertexAttribPointer(k, attribute[k].size, GL_FLOAT, GL_FALSE, 32,
-                                        (const char *)NULL + attribute[k].offset);
+                                        (const void *)attribute[k].offset);
   }
 }
 

@@ -233,7 +233,7 @@ static abbe_result splat_photons(abbe_thesis *t, abbe_error *error) {
                  (GLsizei)t->base.scene->plan->desc.wavelengths, &t->base.colour[0][0]);
   gl->BindVertexArray(t->base.scene->gpu->empty_array);
   gl->BindBuffer(GL_DRAW_INDIRECT_BUFFER, t->cells.list[ABBE_CELL_LEVELS - 1]);
-  gl->DrawArraysIndirect(GL_POINTS, (const char *)NULL + 16);
+  gl->DrawArraysIndirect(GL_POINTS, (const void *)(uintptr_t)16);
   gl->Disable(GL_BLEND);
   abbe_gpu_book_lap(t->base.scene->gpu, ABBE_PASS_PHOTONS);
   return ABBE_OK;

@@ -360,6 +360,6 @@ void abbe_seen_meshes_draw_numbered(const abbe_seen_meshes *seen, size_t object,
     for (end = i + 1; end < count && face_of[end] == face_of[end - 1] + 1; end++) continue;
     gl->Uniform1i(location, (GLint)(face_first + face_of[i]));
     gl->DrawElements(GL_TRIANGLES, (GLsizei)(3 * (end - i)), GL_UNSIGNED_INT,
-                     (const char *)NULL + 3 * i * sizeof(GLuint));
+                     (const void *)(uintptr_t)(3 * i * sizeof(GLuint)));
   }
 }
