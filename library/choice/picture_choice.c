@@ -8,13 +8,14 @@
 #include "library/choice/trace_times.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { MOST_PASSES = 65536, REPEATS = 3 };
 static const double repeats_share = 0.1; /* share of a budget, for the yardstick's repeats */
-static const double slack = 0.02;        /* more accuracy than that is not seen */
+static const double unseen = 0.02;       /* more accuracy than that is not seen */
 
 #define ABBE_NAME_OF(code, name) name,
 static const char *const class_names[] = {ABBE_PRESET_CLASSES(ABBE_NAME_OF) NULL};
@@ -247,7 +248,7 @@ static size_t pick(const abbe_picture_request *q, const candidates *all, bool *k
   size_t at = 0;
   *kept = true;
   if (q->name != NULL) {
-    const size_t accurate = abbe_pareto_front_accurate(all->error, all->count, slack);
+    const size_t accurate = abbe_pareto_front_accurate(all->error, all->count, unseen);
     if (strcmp(q->name, preset_names[ABBE_PRESET_ACCURATE]) == 0) return accurate;
     if (strcmp(q->name, preset_names[ABBE_PRESET_BALANCED]) == 0)
       return abbe_pareto_front_knee(all->ms, all->error, accurate + 1);
@@ -409,4 +410,55 @@ void abbe_picture_describe(const abbe_picture_point *point, char *out, size_t si
     snprintf(out, size, "the tracer: %zu passes of %zu photons%s", point->passes,
              point->photons * point->photons,
              point->tool == ABBE_PICTURE_TRACE_FILTER ? ", filtered" : "");
+}
+
+static bool counts(double cost, double error) {
+  return isfinite(cost) && cost > 0 && isfinite(error);
+}
+
+/* Whether j beats i, or is equal and came first. */
+static bool beats(const double *cost, const double *error, size_t j, size_t i) {
+  if (!counts(cost[j], error[j]) || cost[j] > cost[i] || error[j] > error[i]) return false;
+  return cost[j] < cost[i] || error[j] < error[i] || j < i;
+}
+
+size_t abbe_pareto_front_order(const double *cost, const double *error, size_t count,
+                               size_t *order) {
+  size_t found = 0;
+  for (size_t i = 0; i < count; i++) {
+    bool on_front = counts(cost[i], error[i]);
+    for (size_t j = 0; j < count && on_front; j++) on_front = j == i || !beats(cost, error, j, i);
+    if (!on_front) continue;
+    size_t at = found++;
+    for (; at > 0 && cost[order[at - 1]] > cost[i]; at--) order[at] = order[at - 1];
+    order[at] = i;
+  }
+  return found;
+}
+
+static double height(double error) {
+  return log(fmax(error, 1e-12));
+}
+
+size_t abbe_pareto_front_knee(const double *cost, const double *error, size_t count) {
+  if (count < 3) return count / 2;
+  double x0 = log(cost[0]), x1 = log(cost[count - 1]);
+  double y0 = height(error[0]), y1 = height(error[count - 1]);
+  size_t best = count / 2;
+  double most = 1e-9;
+  for (size_t i = 1; i + 1 < count; i++) {
+    double line = y0 + (y1 - y0) * (log(cost[i]) - x0) / (x1 - x0);
+    double below = line - height(error[i]);
+    if (below > most) best = i;
+    most = fmax(most, below);
+  }
+  return best;
+}
+
+size_t abbe_pareto_front_accurate(const double *error, size_t count, double slack) {
+  double least = INFINITY;
+  for (size_t i = 0; i < count; i++) least = fmin(least, error[i]);
+  for (size_t i = 0; i < count; i++)
+    if (error[i] <= least * (1 + slack)) return i;
+  return 0;
 }
