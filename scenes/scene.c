@@ -128,6 +128,47 @@ bool abbe_scene_is_polarised(const abbe_scene *scene) {
   return any;
 }
 
+/* Whether balls around two objects meet on some line from a place, or of w 0 along a direction. */
+static bool are_in_line(const abbe_object *a, const abbe_object *b, const double from[3],
+                        bool far) {
+  const abbe_object *both[2] = {a, b};
+  double to[2][3], reach = 0;
+  for (int i = 0; i < 2; i++) {
+    double size[3];
+    for (int k = 0; k < 3; k++) {
+      size[k] = 0.5 * (both[i]->max[k] - both[i]->min[k]);
+      to[i][k] = 0.5 * (both[i]->max[k] + both[i]->min[k]) - (far ? 0 : from[k]);
+    }
+    const double radius = abbe_vector_length(size), away = abbe_vector_length(to[i]);
+    reach += far ? radius : radius < away ? asin(radius / away) : ABBE_PI;
+  }
+  if (!far)
+    return acos(fmax(-1, fmin(1, abbe_vector_dot(to[0], to[1]) / abbe_vector_length(to[0]) /
+                                     abbe_vector_length(to[1])))) < reach;
+  double apart[3], across[3];
+  abbe_vector_subtract(to[0], to[1], apart);
+  abbe_vector_cross(apart, from, across);
+  return abbe_vector_length(across) < reach;
+}
+
+const abbe_object *abbe_scene_crystal_in_line(const abbe_scene *scene) {
+  for (size_t i = 0; i < scene->object_count; i++)
+    for (size_t k = 0; k < i; k++) {
+      const abbe_object *a = &scene->object[i], *b = &scene->object[k];
+      if (a->material == NULL || b->material == NULL || !abbe_material_is_crystal(a->material) ||
+          !abbe_material_is_crystal(b->material))
+        continue;
+      bool line = are_in_line(a, b, scene->camera.eye, false);
+      for (size_t l = 0; l < scene->light_count; l++) {
+        const bool far = scene->light[l].kind == ABBE_LIGHT_DIRECTIONAL;
+        const double *from = far ? scene->light[l].direction : scene->light[l].position;
+        line = line || are_in_line(a, b, from, far);
+      }
+      if (line) return a;
+    }
+  return NULL;
+}
+
 void abbe_light_upright(const double direction[3], double across[3], double up[3]) {
   const double z[3] = {0, 0, 1}, y[3] = {0, 1, 0}, upright = 1e-6;
   abbe_vector_cross(hypot(direction[0], direction[1]) < upright ? y : z, direction, across);

@@ -188,6 +188,9 @@ bool abbe_scene_is_hazy(const abbe_scene *scene);
 
 /* Whether there is a polariser on the camera or on a light. */
 bool abbe_scene_is_polarised(const abbe_scene *scene);
+/* A crystal that has another behind it as the camera or a light looks, to judge by balls around
+ * them: what comes to it is polarised. NULL: there is none. */
+const abbe_object *abbe_scene_crystal_in_line(const abbe_scene *scene);
 
 /* Where a light's polariser has its angle 0 (across) and 90 degrees: unit, at right angles to the
  * direction; up is z, or y where it shines along z. */

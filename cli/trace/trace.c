@@ -64,7 +64,8 @@ static const struct argp_option options[] = {
     {"physics", OPTION_PHYSICS, "NAME", 0,
      "full, or matched: what the renderer's plan models and no more", 1},
     {"polarisation", OPTION_POLARISATION, "NAME", 0,
-     "auto: polarised light where the scene has polarisers; or on, or off, which leaves them out",
+     "auto: polarised light where the scene has polarisers, or crystals in line; or on, or off, "
+     "which leaves them out",
      1},
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
     {"map", OPTION_MAP, "N|WxH", 0, "texels a side of the receiver map, or across and down (512)",

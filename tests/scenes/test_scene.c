@@ -227,3 +227,29 @@ TEST(lights_are_found_by_name_or_number) {
   REFUSED(ABBE_INVALID_ARGUMENT, "more than one light is called 'sun'",
           abbe_scene_find_light(&scene, "sun", &index, &error));
 }
+
+/* Two crystals a metre apart along x, each within a ball of 0.17 m. */
+TEST(crystals_stand_in_line_or_not) {
+  abbe_material crystal = {.extraordinary = {.count = 1}}, glass = {0};
+  abbe_object object[2] = {
+      {.min = {-0.1, -0.1, -0.1}, .max = {0.1, 0.1, 0.1}, .material = &crystal},
+      {.min = {0.9, -0.1, -0.1}, .max = {1.1, 0.1, 0.1}, .material = &crystal}};
+  abbe_light light = {.kind = ABBE_LIGHT_DIRECTIONAL, .direction = {0, 0, -1}};
+  abbe_scene scene = {.object = object,
+                      .object_count = 2,
+                      .light = &light,
+                      .light_count = 1,
+                      .camera.eye = {0.5, -3, 0}};
+  assert_null(abbe_scene_crystal_in_line(&scene));
+  scene.camera.eye[0] = 3;
+  scene.camera.eye[1] = -0.3;
+  assert_ptr_equal(abbe_scene_crystal_in_line(&scene), &object[1]);
+  object[0].material = &glass;
+  assert_null(abbe_scene_crystal_in_line(&scene));
+  object[0].material = &crystal;
+  scene.camera.eye[1] = -3;
+  assert_null(abbe_scene_crystal_in_line(&scene));
+  light.direction[0] = sqrt(0.96);
+  light.direction[2] = -0.2;
+  assert_non_null(abbe_scene_crystal_in_line(&scene));
+}

@@ -429,6 +429,10 @@ static void note_pane(const abbe_object *o, double lambda_nm, abbe_plan *plan) {
 static void note_polarisation(const abbe_scene *scene, abbe_plan *plan) {
   const char *text = "%s: polarisation matters: its polariser is left out, and with it the half or "
                      "more of the light that it takes; 'abbe trace' follows polarised light";
+  const abbe_object *behind = abbe_scene_crystal_in_line(scene);
+  if (behind != NULL)
+    abbe_plan_note(plan, "%s: polarisation matters: light comes to it from another crystal",
+                   behind->name);
   if (!abbe_scene_is_polarised(scene)) return;
   if (scene->camera.polariser.kind != ABBE_POLARISER_NONE) abbe_plan_note(plan, text, "camera");
   for (size_t i = 0; i < scene->light_count; i++)

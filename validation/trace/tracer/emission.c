@@ -217,8 +217,8 @@ abbe_result abbe_tracer_polarise(abbe_tracer *t, abbe_error *error) {
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "matched physics is the renderer's, which has no polarised light: take "
                           "full physics");
-  physics->polarised =
-      on || (sheets && !physics->matched && t->desc.polarisation == ABBE_TRACE_POLARISATION_AUTO);
+  const bool chooses = !physics->matched && t->desc.polarisation == ABBE_TRACE_POLARISATION_AUTO;
+  physics->polarised = on || (chooses && (sheets || abbe_scene_crystal_in_line(s) != NULL));
   t->passes = 1;
   if (!physics->polarised || !sheets) return ABBE_OK;
   if (s->camera.polariser.kind != ABBE_POLARISER_NONE) t->passes = 0.5f;
