@@ -377,14 +377,14 @@ Stretch way_of_part(Node a, Node b, int interval, int k, int parts) {
 int parts_for(float parted) { return min(1 << int(ceil(log2(max(parted, 1.0)))), PARTS); }
 
 void list_path(uint path, Photon photon) {
-  int order = int(path % uint(counts.slots));
+  int order = int(path % uint(counts.slots)), samples = of_dispatch(sample_count);
   Node a = no_node(), b;
   Cell cell, before;
   Run run = run_from(a), done;
-  for (int i = 0; i <= sample_count; i++) {
-    b = node_at(path, min(i, sample_count - 1));
-    if (i == sample_count) b = no_node();
-    bool joined = a.path != 0u && a.path == b.path, within = i > 0 && i < sample_count;
+  for (int i = 0; i <= samples; i++) {
+    b = node_at(path, min(i, samples - 1));
+    if (i == samples) b = no_node();
+    bool joined = a.path != 0u && a.path == b.path, within = i > 0 && i < samples;
     int interval = sample_first + i - 1, parts = 0;
     float parted = joined ? parting(a, Apart(b.from - a.from, b.to - a.to), cell) : 0.0;
     bool one = joined && parted <= 1.0;

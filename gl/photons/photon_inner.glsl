@@ -42,7 +42,7 @@ float mirror(PhotonRay photon, uint path, float reflected) {
   uint signature = signature_of(path * 17u + to.receiver, to, uint(front.refractor));
   float left = outside_left(photon, front.p, d, to);
 #ifdef HAZE
-  if (keeps_ways(photon)) {
+  if (keeps_ways()) {
     keep_air_way(photon, front.p, d, length_to(to, front.p),
                  clear_hit(MIRROR_SLOT, vec3(0), reflected * photon.flux * left, signature, vec4(0)));
     return 0.0;
@@ -84,7 +84,7 @@ float keep_outgoing(PhotonRay photon, Outgoing o, int facet, int order, uint pat
   add_tint(hit.tints, inside.attenuation.tint, inside.metres);
 #endif
 #ifdef HAZE
-  if (keeps_ways(photon)) {
+  if (keeps_ways()) {
     keep_air_way(photon, o.p, o.d, length_to(to, o.p), hit);
     return 0.0;
   }

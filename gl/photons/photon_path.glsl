@@ -66,7 +66,7 @@ struct ReceiverHit {
 };
 
 #ifdef TILES
-uniform bool fits_tiles;  // they are yet to be chosen: coordinates of any chart will do
+uniform int fits_tiles;  // they are yet to be chosen: coordinates of any chart will do
 layout(binding = UNIT_CHART_ROWS) uniform samplerBuffer chart_rows;  // two a chart: from a place to its u, and v
 
 // Where the light's map does not hold a place: the tile of a chart's side on which it lies; false where
@@ -74,7 +74,7 @@ layout(binding = UNIT_CHART_ROWS) uniform samplerBuffer chart_rows;  // two a ch
 bool beside_map(int side, inout vec3 place, out int tile) {
   vec3 at = place;
   tile = tile_of_side(light, side);
-  if (fits_tiles) {
+  if (of_dispatch(fits_tiles) > 0) {
     vec4 to_u = texelFetch(chart_rows, side >> 1 << 1), to_v = texelFetch(chart_rows, side | 1);
     place = vec3(dot(to_u.xyz, at) + to_u.w, dot(to_v.xyz, at) + to_v.w, side);
     return true;
@@ -120,10 +120,8 @@ ReceiverHit meet_receiver(vec3 p, vec3 d, float t_min, float t_max) {
 }
 
 #ifdef HAZE
-// Photons of this number and above keep their segments: a dispatch has all or none of them. Mesa 25's zink may take the
-// value of an earlier dispatch for a uniform that decides a branch alone.
-uniform uint ways_from;
-bool keeps_ways(PhotonRay photon) { return photon.item >= ways_from; }
+uniform int ways;  // 1: they are kept
+bool keeps_ways() { return of_dispatch(ways) > 0; }
 
 // Extinction and scattering of the air, 1/m.
 vec2 air_haze(int i) { return spectra[REFRACTORS * counts.wavelengths + i].yz; }

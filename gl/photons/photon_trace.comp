@@ -39,6 +39,7 @@ uniform int ledger_first;  // wavelengths before this one are in the ledger alre
 // REFINED: all wavelengths of the intervals on the list, with both ends, which are of the coarse set.
 const int ALL = 0, COARSE = 1, REFINED = 2;
 uniform int set;
+bool is_set(int which) { return of_dispatch(set) == which; }
 uniform int hit_stride;     // capacity for samples
 uniform uint most_pairs;    // capacity of the list of intervals
 uniform float share_limit;   // paths below this share of their light end
@@ -73,11 +74,11 @@ Task task_of(uint thread) {
   // A photon's wavelengths side by side: they take the same paths for longer than its neighbours.
   t.item = t.photon = thread / uint(sample_count);
   t.sample_number = int(thread % uint(sample_count));
-  t.there = t.item < (set == REFINED ? min(pair_count, most_pairs) : photon_count);
-  t.wavelength = set == COARSE ? coarse_node(t.sample_number) : sample_first + t.sample_number;
+  t.there = t.item < (is_set(REFINED) ? min(pair_count, most_pairs) : photon_count);
+  t.wavelength = is_set(COARSE) ? coarse_node(t.sample_number) : sample_first + t.sample_number;
   t.interval = 0;
   t.low = t.high = -1;
-  if (set == REFINED && t.there) {
+  if (is_set(REFINED) && t.there) {
     uint pair = pair_at[t.item];
     t.interval = int(pair % PAIR_INTERVALS);
     t.photon = pair / PAIR_INTERVALS;
@@ -112,7 +113,7 @@ PhotonRay ray_of(Task t) {
 void load_attenuation(Task t) {
   bool at_low = t.wavelength == t.low, at_high = t.wavelength == t.high;
   int all = counts.nodes == counts.wavelengths ? 0 : counts.nodes;
-  int node = set == COARSE ? t.sample_number : all + t.wavelength;
+  int node = is_set(COARSE) ? t.sample_number : all + t.wavelength;
   below_texel = TINT_TEXELS * PART_SURFACES * (at_low ? t.interval : node);
   above_texel = TINT_TEXELS * PART_SURFACES * (at_high ? t.interval + 1 : node);
   below_is_above = at_low;
@@ -124,8 +125,8 @@ void load_attenuation(Task t) {
 void enter(Task t, float flux, Shares entry[5]) {
   vec4 weight = sample_weight[light * counts.wavelengths + t.wavelength];
   bool at_low = t.wavelength == t.low, at_high = t.wavelength == t.high;
-  float below = set == COARSE ? weight.z : at_low ? 0.0 : weight.x;
-  float above = set == COARSE ? weight.w : at_high ? 0.0 : weight.y;
+  float below = is_set(COARSE) ? weight.z : at_low ? 0.0 : weight.x;
+  float above = is_set(COARSE) ? weight.w : at_high ? 0.0 : weight.y;
   float back = at_low ? weight.w : at_high ? weight.z : 0.0;
   float scale = flux / ledger_unit;
   for (int k = 0; k < 5; k++) {

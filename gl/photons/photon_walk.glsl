@@ -54,7 +54,7 @@ PhotonHit hit_of(PhotonRay photon, PathState w, int slot, vec3 place, uint signa
 
 void end_path(PhotonRay photon, PathState w, ReceiverHit to, uint owner, inout uint used, inout Ends e) {
 #ifdef HAZE
-  if (keeps_ways(photon)) return;
+  if (keeps_ways()) return;
 #endif
   int slot = to.state >= HELD ? take_slot(w.path, used) : -1;
   if (slot >= 0) {
@@ -131,7 +131,7 @@ void follow(PhotonRay photon, float share, int wave, inout uint used, inout Shar
       e.absorbed += w.share * (1.0 - left) * left_of(w);
       w.share *= left;
     }
-    if (keeps_ways(photon) && !arrives && w.share > 0.0)
+    if (keeps_ways() && !arrives && w.share > 0.0)
       keep_way(photon, w, length_m, to.state != NO_RECEIVER ? to.receiver : met ? uint(h.hit.refractor) * 7919u + 65537u : 0u, owner, used);
 #endif
     if (to.state == NO_RECEIVER && met) {

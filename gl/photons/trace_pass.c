@@ -136,7 +136,7 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
   abbe_gpu_set_int(gpu, program, "sample_count", (int)count);
   abbe_gpu_set_int(gpu, program, "hit_stride", (int)hits->stride);
   abbe_gpu_set_int(gpu, program, "ledger_first", 0);
-  if (scene->plan->hazy) abbe_gpu_set_uint(gpu, program, "ways_from", UINT32_MAX);
+  if (scene->plan->hazy) abbe_gpu_set_int(gpu, program, "ways", 0);
   abbe_gpu_set_float(gpu, program, "share_limit", scene->plan->desc.energy_share);
   abbe_gpu_set_int(gpu, program, "fits_tiles", pass->atlas->fits ? 1 : 0);
   if (scene->plan->tints > 0)
@@ -174,7 +174,7 @@ static void trace_batch(abbe_trace_pass *pass, size_t light, size_t first, size_
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const size_t photons = pass->start->views->light[light].photon_count;
   abbe_trace_pass_begin(pass, light, ABBE_TRACE_ALL, &pass->hits, count);
-  if (ways) abbe_gpu_set_uint(gpu, pass->program, "ways_from", 0);
+  if (ways) abbe_gpu_set_int(gpu, pass->program, "ways", 1);
   abbe_gpu_set_int(gpu, pass->program, "sample_first", (int)first);
   abbe_gpu_set_int(gpu, pass->program, "ledger_first", (int)ledger_first);
   abbe_gpu_dispatch(gpu, pass->program, groups_of(photons * count));
