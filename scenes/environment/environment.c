@@ -209,13 +209,6 @@ void abbe_environment_radiance_of_level(const abbe_environment *environment, siz
   abbe_radiance_map_at(index == 0 ? &environment->map : &environment->level[index - 1], own, rgb);
 }
 
-void abbe_environment_irradiance(const abbe_environment *environment, const double normal[3],
-                                 double rgb[3]) {
-  double own[3];
-  apply(environment->to_map, normal, own);
-  abbe_radiance_map_irradiance(&environment->map, own, rgb);
-}
-
 /* --- sampling --- */
 
 /* A texel's share over polar angle: (a + b t) |sin(middle + t)|, t from its middle, in at most four

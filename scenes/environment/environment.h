@@ -76,10 +76,6 @@ void abbe_environment_radiance(const abbe_environment *environment, const double
 void abbe_environment_radiance_of_level(const abbe_environment *environment, size_t index,
                                         const double direction[3], double rgb[3]);
 
-/* Irradiance, W/m2, on an unshadowed plane of that unit world normal, from its front. */
-void abbe_environment_irradiance(const abbe_environment *environment, const double normal[3],
-                                 double rgb[3]);
-
 /* A unit world direction for u in [0, 1)^3, the radiance from there, and its density, 1/sr, which
  * is the luminance of the radiance from there over its integral: radiance of one hue over pdf is
  * the same everywhere. Never one from which no light comes. */

@@ -144,42 +144,6 @@ void abbe_radiance_map_mean(const abbe_radiance_map *map, double rgb[3]) {
   }
 }
 
-/* Mean over a texel's share of the cosine to the normal, 0 behind the plane: by places x places
- * midpoints, or in the middle where places is 1. */
-static double facing(const abbe_radiance_map *map, size_t column, size_t row, size_t places,
-                     const double normal[3]) {
-  double sum = 0, whole = 0;
-  for (size_t i = 0; i < places * places; i++) {
-    const double x = ((double)(i % places) + 0.5) * 2 / (double)places - 1;
-    const double y = ((double)(i / places) + 0.5) * 2 / (double)places - 1;
-    const double at = (double)row + 0.5 + y;
-    const double share =
-        (1 - fabs(x)) * (1 - fabs(y)) * fabs(sin(ABBE_PI * at / (double)map->height));
-    double direction[3];
-    abbe_radiance_map_direction(map, (double)column + 0.5 + x, at, direction);
-    whole += share;
-    sum += share * fmax(abbe_vector_dot(direction, normal), 0);
-  }
-  return sum / whole;
-}
-
-void abbe_radiance_map_irradiance(const abbe_radiance_map *map, const double normal[3],
-                                  double rgb[3]) {
-  const size_t places = map->height >= 512 ? 1 : 2 * ((511 + map->height) / map->height);
-  rgb[0] = rgb[1] = rgb[2] = 0;
-  for (size_t row = 0; row < map->height; row++) {
-    const double solid = abbe_radiance_map_solid_angle(map, row);
-    double sum[3] = {0};
-    for (size_t column = 0; column < map->width; column++) {
-      const float *texel = map->rgb + 3 * (row * map->width + column);
-      if (!(texel[0] > 0 || texel[1] > 0 || texel[2] > 0)) continue;
-      const double cosine = facing(map, column, row, places, normal);
-      for (int k = 0; k < 3; k++) sum[k] += cosine * (double)texel[k];
-    }
-    for (int k = 0; k < 3; k++) rgb[k] += solid * sum[k];
-  }
-}
-
 /* One texel of the halved map, from rows [top, bottom) and columns [left, right) of the map. */
 static void average(const abbe_radiance_map *map, double top, double bottom, double left,
                     double right, float out[3]) {

@@ -53,11 +53,6 @@ double abbe_radiance_map_solid_angle(const abbe_radiance_map *map, size_t row);
 /* Mean over the sphere. */
 void abbe_radiance_map_mean(const abbe_radiance_map *map, double rgb[3]);
 
-/* Irradiance on a plane of the unit normal, from the half space that it points to: a quadrature of
- * at least 1024 x 512 places, right to 1e-4 of what the brightest texel would give everywhere. */
-void abbe_radiance_map_irradiance(const abbe_radiance_map *map, const double normal[3],
-                                  double rgb[3]);
-
 /* Half as wide and high, odd heights rounded down: each texel is the mean of those that it covers,
  * in part or whole, by solid angle. The sum over cells of solid angle x radiance stays as it is.
  * ABBE_INVALID_ARGUMENT for a map that is fewer than four texels high, ABBE_NO_MEMORY. */

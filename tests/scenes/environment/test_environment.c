@@ -117,10 +117,6 @@ TEST(turning_both_changes_nothing) {
     abbe_environment_radiance(&turned, moved, other);
     for (int k = 0; k < 3; k++) assert_near(one[k], other[k], 1e-9 * (1 + one[k]));
     assert_near(abbe_environment_pdf(&still, d), abbe_environment_pdf(&turned, moved), 1e-9);
-    if (i % 20 != 0) continue;
-    abbe_environment_irradiance(&still, d, one);
-    abbe_environment_irradiance(&turned, moved, other);
-    for (int k = 0; k < 3; k++) assert_near(one[k], other[k], 1e-9 * one[k]);
   }
 }
 
@@ -133,8 +129,8 @@ TEST(light_is_linear) {
   abbe_alias_table_free(&three.texels);
   for (size_t i = 0; i < three.level_count; i++) abbe_radiance_map_free(&three.level[i]);
   OK(abbe_environment_prepare(&three, &error));
-  abbe_environment_irradiance(&one, n, a);
-  abbe_environment_irradiance(&three, n, b);
+  abbe_environment_radiance(&one, n, a);
+  abbe_environment_radiance(&three, n, b);
   assert_near(b[0], 3 * a[0], 1e-5 * b[0]);
   assert_near(three.mean[0], 3 * one.mean[0], 1e-6 * three.mean[0]);
   assert_near(abbe_environment_pdf(&three, n), abbe_environment_pdf(&one, n), 1e-6);

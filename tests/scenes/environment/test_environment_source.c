@@ -1,4 +1,5 @@
 #include "tests/check.h"
+#include "tests/scenes/environment/irradiance.h"
 
 #include "base/maths.h"
 #include "scenes/environment/environment_source.h"
@@ -72,7 +73,7 @@ TEST(known_irradiances) {
       .kind = ABBE_SOURCE_DISK, .radiance = {1, 1, 1}, .radius_rad = 30 * DEGREE};
   place(&s, 90, 0);
   OWNED(abbe_radiance_map, map) = map_of(1024, &s);
-  abbe_radiance_map_irradiance(&map, up_z, rgb);
+  irradiance_of_map(&map, up_z, rgb);
   assert_near(rgb[0] / (ABBE_PI * 0.25), 1, 1e-4);
   abbe_radiance_map_free(&map);
   for (double elevation = 5; elevation <= 90; elevation += 42.5) {
@@ -81,9 +82,9 @@ TEST(known_irradiances) {
       s.radiance[k] = abbe_environment_source_disk_radiance(800, s.radius_rad);
     place(&s, elevation, 33);
     map = map_of(1024, &s);
-    abbe_radiance_map_irradiance(&map, s.centre, rgb);
+    irradiance_of_map(&map, s.centre, rgb);
     assert_near(rgb[0] / 800, 1, 1e-4);
-    abbe_radiance_map_irradiance(&map, up_z, rgb);
+    irradiance_of_map(&map, up_z, rgb);
     assert_near(rgb[0] / (800 * sin(elevation * DEGREE)), 1, 1e-4);
     abbe_radiance_map_free(&map);
   }
@@ -108,9 +109,9 @@ TEST(skies) {
     const abbe_environment_source s = {
         .kind = ABBE_SOURCE_SKY, .radiance = {2, 2, 2}, .sky = {type, {sin(1), 0, cos(1)}}};
     OWNED(abbe_radiance_map, map) = map_of(1024, &s);
-    abbe_radiance_map_irradiance(&map, up_z, rgb);
+    irradiance_of_map(&map, up_z, rgb);
     assert_near(rgb[0] / (2 * abbe_sky_horizontal(&s.sky)), 1, 1e-4);
-    abbe_radiance_map_irradiance(&map, (const double[3]){0, 0, -1}, rgb);
+    irradiance_of_map(&map, (const double[3]){0, 0, -1}, rgb);
     assert_near(rgb[0], 0, 1e-3);
   }
 }
@@ -124,7 +125,7 @@ TEST(domes) {
   abbe_environment_source s = {
       .kind = ABBE_SOURCE_DOME, .radiance = {2, 2, 2}, .knot_count = 2, .knot = iso};
   OWNED(abbe_radiance_map, map) = map_of(1024, &s);
-  abbe_radiance_map_irradiance(&map, up_z, rgb);
+  irradiance_of_map(&map, up_z, rgb);
   assert_near(rgb[0] / (2 * ABBE_PI), 1, 1e-4);
   assert_near(integral(&map, 0) / (4 * ABBE_PI), 1, 1e-4);
   abbe_radiance_map_free(&map);

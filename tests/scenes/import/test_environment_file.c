@@ -1,4 +1,5 @@
 #include "tests/check.h"
+#include "tests/scenes/environment/irradiance.h"
 #include "tests/scenes/scene_text.h"
 
 #include "base/maths.h"
@@ -26,7 +27,7 @@ static void surroundings(const char *text, abbe_environment *out) {
 static void check_irradiance(const char *text, const double normal[3], double expected) {
   double rgb[3];
   FILLED(abbe_environment, e, surroundings(text, &e));
-  abbe_environment_irradiance(&e, normal, rgb);
+  irradiance_of(&e, normal, rgb);
   assert_near(rgb[0], expected, 1e-4 * (expected + 0.2));
 }
 
@@ -235,7 +236,7 @@ TEST(what_is_documented_loads) {
     const char *scene_text = printed("%s%.*s", VIEW, length, at);
     double rgb[3];
     OWNED(abbe_scene, scene) = scene_of(scene_text);
-    abbe_environment_irradiance(scene.environment, up, rgb);
+    irradiance_of(scene.environment, up, rgb);
     assert_int_in_range(found, 0, 2);
     assert_near(rgb[1], grounds[found], tolerance[found]);
   }

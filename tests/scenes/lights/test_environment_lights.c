@@ -1,4 +1,5 @@
 /* Directional lights in place of an environment, and the soft light that is left. */
+#include "tests/scenes/environment/irradiance.h"
 #include "tests/scenes/scene_text.h"
 
 #include "base/maths.h"
@@ -43,12 +44,12 @@ TEST(every_open_plane_has_its_irradiance) {
     add(STUDIO, count, &scene, &lit);
     assert_true(lit.light_count <= count);
     double most[3], n[3] = {0, 0, 1};
-    abbe_environment_irradiance(scene.environment, n, most);
+    irradiance_of(scene.environment, n, most);
     for (int i = 0; i < 12; i++) {
       double soft[3], rgb[3], all = 0;
       for (int k = 0; k < 3; k++) n[k] = sin(7.1 * i + 3 * k + 1);
       abbe_vector_normalise(n);
-      abbe_environment_irradiance(scene.environment, n, rgb);
+      irradiance_of(scene.environment, n, rgb);
       abbe_irradiance_map_at(lit.soft_light, n, soft);
       for (size_t k = 0; k < lit.light_count; k++)
         all += fmax(-abbe_vector_dot(lit.light[k].direction, n), 0) * lit.light[k].power;
@@ -114,7 +115,7 @@ TEST(smooth_surroundings_need_no_light) {
     double up[3], rgb[3];
     add(smooth[i], 16, &scene, &lit);
     assert_int_equal(lit.light_count, 0);
-    abbe_environment_irradiance(scene.environment, (const double[3]){0, 0, 1}, up);
+    irradiance_of(scene.environment, (const double[3]){0, 0, 1}, up);
     abbe_irradiance_map_at(lit.soft_light, (const double[3]){0, 0, 1}, rgb);
     for (int k = 0; k < 3; k++) assert_near(rgb[k] / up[k], 1, 2e-3);
     drop(&scene, &lit);
