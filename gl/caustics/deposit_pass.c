@@ -148,31 +148,6 @@ static bool goes_on(void *gpu) {
   return abbe_gpu_ask(gpu);
 }
 
-/* Buffers that the processor reads and writes where they are. */
-typedef struct mapped {
-  const abbe_gl *gl;
-  GLuint buffer[16];
-  size_t count;
-  bool whole;
-} mapped;
-
-static void *map_buffer(mapped *m, GLuint buffer, GLbitfield access) {
-  GLint size = 0;
-  m->gl->BindBuffer(GL_COPY_READ_BUFFER, buffer);
-  m->gl->GetBufferParameteriv(GL_COPY_READ_BUFFER, GL_BUFFER_SIZE, &size);
-  void *at = m->gl->MapBufferRange(GL_COPY_READ_BUFFER, 0, size, access);
-  if (at != NULL) m->buffer[m->count++] = buffer;
-  m->whole = m->whole && at != NULL;
-  return at;
-}
-
-static void unmap(mapped *m) {
-  for (size_t i = 0; i < m->count; i++) {
-    m->gl->BindBuffer(GL_COPY_READ_BUFFER, m->buffer[i]);
-    m->gl->UnmapBuffer(GL_COPY_READ_BUFFER);
-  }
-}
-
 /* What photon_deposit.comp would be told of the batch. */
 static void tell_batch(const abbe_deposit_pass *pass, size_t light, const abbe_hit_batch *b,
                        abbe_path_splats *p) {
@@ -214,26 +189,27 @@ static void tell_batch(const abbe_deposit_pass *pass, size_t light, const abbe_h
 }
 
 /* And what it would read. */
-static void map_paths(const abbe_deposit_pass *pass, bool fine, mapped *m, abbe_path_splats *p) {
+static void map_paths(const abbe_deposit_pass *pass, bool fine, abbe_gpu_maps *m,
+                      abbe_path_splats *p) {
   const abbe_trace_pass *trace = pass->trace;
   const abbe_hits *nodes = fine ? &pass->refine->hits : &trace->hits;
   const size_t tints = fine ? trace->spectra->nodes * p->refractors * ABBE_TINT_TEXELS : 0;
-  const char *photons = map_buffer(m, trace->start->photons, GL_MAP_READ_BIT);
-  p->hits = map_buffer(m, trace->hits.hits, GL_MAP_READ_BIT);
-  p->signatures = map_buffer(m, trace->hits.signatures, GL_MAP_READ_BIT);
+  const char *photons = abbe_gpu_map(m, trace->start->photons, GL_MAP_READ_BIT);
+  p->hits = abbe_gpu_map(m, trace->hits.hits, GL_MAP_READ_BIT);
+  p->signatures = abbe_gpu_map(m, trace->hits.signatures, GL_MAP_READ_BIT);
   p->node_hits = p->hits;
   p->node_signatures = p->signatures;
   if (fine) {
-    p->node_hits = map_buffer(m, nodes->hits, GL_MAP_READ_BIT);
-    p->node_signatures = map_buffer(m, nodes->signatures, GL_MAP_READ_BIT);
-    p->pairs = map_buffer(m, pass->refine->pairs, GL_MAP_READ_BIT);
+    p->node_hits = abbe_gpu_map(m, nodes->hits, GL_MAP_READ_BIT);
+    p->node_signatures = abbe_gpu_map(m, nodes->signatures, GL_MAP_READ_BIT);
+    p->pairs = abbe_gpu_map(m, pass->refine->pairs, GL_MAP_READ_BIT);
   }
-  p->intervals = map_buffer(m, trace->spectra->intervals, GL_MAP_READ_BIT);
-  p->photon_of_cell = map_buffer(m, trace->start->photon_of_cell, GL_MAP_READ_BIT);
-  p->wants = map_buffer(m, pass->refine->wants, GL_MAP_READ_BIT);
-  p->paths = map_buffer(m, nodes->paths, GL_MAP_READ_BIT);
-  p->warp = map_buffer(m, pass->map->views->warps, GL_MAP_READ_BIT);
-  if (p->tint_count > 0) p->tints = map_buffer(m, trace->spectra->tints, GL_MAP_READ_BIT);
+  p->intervals = abbe_gpu_map(m, trace->spectra->intervals, GL_MAP_READ_BIT);
+  p->photon_of_cell = abbe_gpu_map(m, trace->start->photon_of_cell, GL_MAP_READ_BIT);
+  p->wants = abbe_gpu_map(m, pass->refine->wants, GL_MAP_READ_BIT);
+  p->paths = abbe_gpu_map(m, nodes->paths, GL_MAP_READ_BIT);
+  p->warp = abbe_gpu_map(m, pass->map->views->warps, GL_MAP_READ_BIT);
+  if (p->tint_count > 0) p->tints = abbe_gpu_map(m, trace->spectra->tints, GL_MAP_READ_BIT);
   if (!m->whole) return;
   p->photons = (const abbe_path_photon *)(const void *)(photons + ABBE_PHOTON_HEADER);
   p->warp += p->light * ABBE_WARP_STEPS;
@@ -255,7 +231,7 @@ static abbe_result deposit_here(abbe_deposit_pass *pass, size_t light, const abb
                           .wide = views->wide,
                           .edges = scene_of(pass)->plan->edges,
                           .tiles = tiles->count > 0 ? tiles : NULL};
-  mapped m = {.gl = gpu->gl, .whole = true};
+  abbe_gpu_maps m = {.gl = gpu->gl, .whole = true};
   abbe_path_splats paths;
   int coarse_node[PAIR_INTERVALS + 1] = {0};
   int64_t entry[3] = {0, 0, 0};
@@ -264,7 +240,7 @@ static abbe_result deposit_here(abbe_deposit_pass *pass, size_t light, const abb
     coarse_node[k] =
         (int)abbe_spectral_tables_node(scene_of(pass)->plan->desc.wavelengths, nodes, k);
   paths.coarse_node = coarse_node;
-  sums.word = map_buffer(&m, pass->map->sums, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
+  sums.word = abbe_gpu_map(&m, pass->map->sums, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
   map_paths(pass, b->set == ABBE_TRACE_REFINED, &m, &paths);
   const abbe_splat_source source = {.list = abbe_path_splats_list,
                                     .from = &paths,
@@ -272,7 +248,7 @@ static abbe_result deposit_here(abbe_deposit_pass *pass, size_t light, const abb
                                     .most = abbe_path_splats_most(&paths)};
   abbe_result result = ABBE_OK;
   if (m.whole) result = abbe_splat_sums_add(&sums, &source, entry, goes_on, gpu, error);
-  unmap(&m);
+  abbe_gpu_unmap(&m);
   abbe_photon_ledger_enter(pass->trace->ledger, entry);
   return result == ABBE_OK ? abbe_gl_check(gpu->gl, "the deposit of photons", error) : result;
 }

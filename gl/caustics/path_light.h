@@ -6,81 +6,9 @@
 #define ABBE_GL_CAUSTICS_PATH_LIGHT_H
 
 #include "gl/caustics/path_splats.h"
-
-#include <math.h>
-#include <string.h>
+#include "gl/device/shader_maths.h"
 
 #define NO_TILE (-1)
-
-typedef struct v2 {
-  float x, y;
-} v2;
-typedef struct v3 {
-  float x, y, z;
-} v3;
-
-static inline float least(float a, float b) {
-  return a < b ? a : b;
-}
-static inline float most(float a, float b) {
-  return a > b ? a : b;
-}
-static inline float clamp(float x, float low, float high) {
-  return least(most(x, low), high);
-}
-static inline float mix(float a, float b, float t) {
-  return a + t * (b - a);
-}
-static inline v2 off2(v2 a, v2 b) {
-  return (v2){a.x - b.x, a.y - b.y};
-}
-static inline v2 times2(float s, v2 a) {
-  return (v2){s * a.x, s * a.y};
-}
-static inline float dot2(v2 a, v2 b) {
-  return a.x * b.x + a.y * b.y;
-}
-static inline float length2(v2 a) {
-  return sqrtf(dot2(a, a));
-}
-static inline v3 plus(v3 a, v3 b) {
-  return (v3){a.x + b.x, a.y + b.y, a.z + b.z};
-}
-static inline v3 off(v3 a, v3 b) {
-  return (v3){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-static inline v3 times(float s, v3 a) {
-  return (v3){s * a.x, s * a.y, s * a.z};
-}
-static inline float dot(v3 a, v3 b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-static inline float length(v3 a) {
-  return sqrtf(dot(a, a));
-}
-static inline v3 mix3(v3 a, v3 b, float t) {
-  return plus(a, times(t, off(b, a)));
-}
-static inline v3 vector_at(const float *f) {
-  return (v3){f[0], f[1], f[2]};
-}
-static inline uint32_t bits_of(float x) {
-  uint32_t bits;
-  memcpy(&bits, &x, sizeof bits);
-  return bits;
-}
-
-static inline float fresnel(float cos_i, float eta) {
-  const float c = clamp(cos_i, 0, 1), along = eta * c;
-  const float t2 = eta <= 1 || along < 1 ? (1 - eta) * (1 + eta) + along * along
-                                         : 1 - eta * eta * ((1 - c) * (1 + c));
-  if (eta == 1) return 0;
-  if (t2 <= 0 || c == 0) return 1;
-  const float t = sqrtf(least(t2, 1)), s = eta * c + t, p = eta * t + c;
-  const float contrast = (eta - 1) * (eta + 1), r_s = contrast / (s * s);
-  const float r_p = contrast / (p * p) * (c * c * (1 + eta * eta) - eta * eta);
-  return least(0.5f * (r_s * r_s + r_p * r_p), 1);
-}
 
 static inline float transmission(bool transmits, float cosine, float index) {
   return transmits ? 1 - fresnel(cosine, 1 / index) : 1;

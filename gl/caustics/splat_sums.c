@@ -1,11 +1,10 @@
 #include "gl/caustics/splat_sums.h"
 
 #include "base/maths.h"
+#include "gl/device/shader_maths.h"
 
-#include <math.h>
 #include <omp.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* The functions and numbers that are photon_splat.comp's have its names. */
 #define LEAST_SIDE 0.25f
@@ -40,18 +39,6 @@ typedef struct grid {
   int level, beside, across, along;
   float size;
 } grid;
-
-static inline float least(float a, float b) {
-  return a < b ? a : b;
-}
-
-static inline float most(float a, float b) {
-  return a > b ? a : b;
-}
-
-static inline float clamp(float x, float low, float high) {
-  return least(most(x, low), high);
-}
 
 /* floor() of what an int holds, for many side by side. */
 static inline int32_t whole_of(float x) {

@@ -222,6 +222,18 @@ void abbe_gpu_set_list(abbe_gpu *gpu, GLuint list, size_t count);
 /* So many bytes from one buffer to another. */
 void abbe_gpu_copy(abbe_gpu *gpu, GLuint from, size_t from_byte, GLuint to, size_t to_byte,
                    size_t bytes);
+/* Buffers that the processor's threads read and write where they are. */
+typedef struct abbe_gpu_maps {
+  const abbe_gl *gl;
+  GLuint buffer[16];
+  size_t count;
+  bool whole; /* all that were asked for are there; true at first */
+} abbe_gpu_maps;
+
+/* A whole buffer, which the device has done with; NULL: it cannot be had. */
+void *abbe_gpu_map(abbe_gpu_maps *maps, GLuint buffer, GLbitfield access);
+void abbe_gpu_unmap(abbe_gpu_maps *maps);
+
 /* Waits for the device: elements of a list, also beyond its capacity. */
 size_t abbe_gpu_read_count(abbe_gpu *gpu, GLuint list);
 

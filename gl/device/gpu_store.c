@@ -200,3 +200,21 @@ size_t abbe_gpu_store_count(const abbe_gpu_store *store, abbe_stored_kind kind) 
   for (size_t i = 0; i < store->count; i++) count += store->item[i].key.kind == kind;
   return count;
 }
+
+void *abbe_gpu_map(abbe_gpu_maps *maps, GLuint buffer, GLbitfield access) {
+  GLint size = 0;
+  maps->gl->BindBuffer(GL_COPY_READ_BUFFER, buffer);
+  maps->gl->GetBufferParameteriv(GL_COPY_READ_BUFFER, GL_BUFFER_SIZE, &size);
+  void *at = maps->gl->MapBufferRange(GL_COPY_READ_BUFFER, 0, size, access);
+  if (at != NULL) maps->buffer[maps->count++] = buffer;
+  maps->whole = maps->whole && at != NULL;
+  return at;
+}
+
+void abbe_gpu_unmap(abbe_gpu_maps *maps) {
+  for (size_t i = 0; i < maps->count; i++) {
+    maps->gl->BindBuffer(GL_COPY_READ_BUFFER, maps->buffer[i]);
+    maps->gl->UnmapBuffer(GL_COPY_READ_BUFFER);
+  }
+  maps->count = 0;
+}

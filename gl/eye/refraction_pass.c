@@ -1,6 +1,7 @@
 #include "gl/eye/refraction_pass.h"
 
 #include "gl/device/bindings.h"
+#include "gl/paths/camera_paths.h"
 #include "gl/scene/spectra/camera_bands.h"
 
 #include <math.h>
@@ -60,6 +61,17 @@ static bool keeps_sights(const abbe_refraction_pass *pass) {
          plan->parallelogram_count <= MOST_SHEETS;
 }
 
+/* What camera_paths.h follows, where a processor would run the shaders. */
+static bool follows_here(const abbe_refraction_pass *pass, const abbe_shader_variant *v) {
+  const abbe_plan *plan = scene_of(pass)->plan;
+  const bool meshes = v->walk && v->hierarchy && !v->spheres && !v->convex && !v->layers;
+  const bool clear = !v->absorbing && !v->band_parts && !v->films && !v->mirrors && !plan->crystals;
+  const bool empty = !v->haze && !v->haze_beyond && v->shafts == 0 && !v->environment;
+  return scene_of(pass)->gpu->software && !pass->keeps && !is_coarse(pass) && !refines(pass) &&
+         meshes && clear && empty && v->area_lights == 0 && !v->receiver_hierarchy &&
+         v->receivers > 0 && v->receivers <= MOST_SHEETS;
+}
+
 /* Rays know how wide they are, and so where what receivers show to the camera will do. */
 static bool shows_receivers(const abbe_refraction_pass *pass) {
   const abbe_gpu_scene *scene = scene_of(pass);
@@ -110,13 +122,16 @@ static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_v
              pass->keeps ? "#define KEEPS_SIGHTS\n" : "");
   if (is_coarse(pass)) snprintf(facts, sizeof facts, "%s#define COARSE_EYE\n", shown);
   snprintf(refined, sizeof refined, "%s#define REFINED\n", shares);
-  abbe_result result =
-      abbe_shader_variant_compute(&camera, gpu, "refraction.comp", facts, &pass->refract, error);
+  camera.pixel_threads = pass->pixel_threads;
+  abbe_result result = ABBE_OK;
+  if (!pass->here)
+    result =
+        abbe_shader_variant_compute(&camera, gpu, "refraction.comp", facts, &pass->refract, error);
   if (result == ABBE_OK && refines(pass))
     result = abbe_shader_variant_compute(&camera, gpu, "refraction.comp", refined,
                                          &pass->refract_refined, error);
-  if (result == ABBE_OK && pass->keeps)
-    result = abbe_shader_variant_compute(variant, gpu, "sights.comp", NULL, &pass->look_up, error);
+  if (result == ABBE_OK && (pass->keeps || pass->here))
+    result = abbe_shader_variant_compute(&camera, gpu, "sights.comp", NULL, &pass->look_up, error);
   return result == ABBE_OK ? make_list(pass, variant, error) : result;
 }
 
@@ -201,6 +216,9 @@ abbe_result abbe_refraction_pass_make(const abbe_lighting *lighting,
                                 .receivers = receivers,
                                 .pixel_threads = variant->pixel_threads};
   out->keeps = keeps_sights(out);
+  out->here = follows_here(out, variant);
+  if (out->here) out->pixel_threads = 1;
+  out->eye_bands = variant->eye_bands;
   take_kept(out, kept);
   abbe_result result = out->whole ? ABBE_OK : make_targets(out, error);
   if (result == ABBE_OK && lighting->scene->plan->camera_sees_refractor)
@@ -267,18 +285,19 @@ static void list_pixels(abbe_refraction_pass *pass) {
                          GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
+static double pixel_angle(const abbe_camera_view *camera) {
+  return (camera->view.window[3] - camera->view.window[2]) / (double)camera->samples[1];
+}
+
 static void use(abbe_refraction_pass *pass, GLuint program) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  const abbe_camera_view *camera = pass->lighting->camera;
-  const double angle =
-      (camera->view.window[3] - camera->view.window[2]) / (double)camera->samples[1];
   abbe_lighting_use(pass->lighting, program);
   abbe_gpu_bind_array(gpu, program, "eye_layers", 4, pass->layers);
   abbe_gpu_bind_texture(gpu, program, "eye_owner", 6, pass->owner);
   abbe_gpu_bind_array(gpu, program, "eye_receivers", UNIT_SEEN_RECEIVERS,
                       pass->shown != 0 ? pass->shown : pass->receivers->colour);
   abbe_gpu_set_float(gpu, program, "share_limit", share_of(pass));
-  abbe_gpu_set_float(gpu, program, "pixel_angle", angle);
+  abbe_gpu_set_float(gpu, program, "pixel_angle", pixel_angle(pass->lighting->camera));
   if (scene_of(pass)->plan->multi_refractor_paths)
     abbe_gpu_set_uint(gpu, program, "eye_inside", scene_of(pass)->plan->eye_inside);
 }
@@ -385,17 +404,56 @@ static abbe_result find_sights(abbe_refraction_pass *pass, abbe_error *error) {
   return ABBE_OK;
 }
 
-/* Their light. */
-static void look_up(abbe_refraction_pass *pass) {
+/* The light of what so many listed pixels show. */
+static void look_up(abbe_refraction_pass *pass, size_t first, size_t count) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  const size_t *samples = pass->lighting->camera->samples;
   abbe_lighting_use(pass->lighting, pass->look_up);
+  abbe_gpu_set_uint(gpu, pass->look_up, "pixel_first", first);
+  abbe_gpu_set_uint(gpu, pass->look_up, "pixel_end", first + count);
   bind_sights(pass);
   abbe_gpu_bind_storage(gpu, BINDING_PIXELS, pass->pixels);
-  gpu->gl->BindImageTexture(0, pass->colour, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-  abbe_gpu_dispatch_list(gpu, pass->look_up, pass->pixels, 0, samples[0] * samples[1], 1);
+  gpu->gl->BindImageTexture(0, resolves(pass) ? pass->colour : pass->receivers->colour, 0, GL_FALSE,
+                            0, GL_WRITE_ONLY, GL_RGBA32F);
+  abbe_gpu_dispatch_list(gpu, pass->look_up, pass->pixels, first, count, 1);
   gpu->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                          GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+/* What refraction.comp would be told. */
+static void tell_paths(const abbe_refraction_pass *pass, abbe_camera_paths *p) {
+  const abbe_gpu_scene *scene = scene_of(pass);
+  const abbe_camera_view *camera = pass->lighting->camera;
+  *p = (abbe_camera_paths){.scene = scene,
+                           .eye_samples = {(float)camera->samples[0], (float)camera->samples[1]},
+                           .share_limit = (float)share_of(pass),
+                           .pixel_angle = (float)pixel_angle(camera),
+                           .eye_bands = (int)pass->eye_bands,
+                           .exits = (int)exits_of(pass),
+                           .shares_spectrum = shares_spectrum(pass),
+                           .interleaves = interleaves(pass)};
+  abbe_view_pack(&camera->view, p->eye_view);
+}
+
+/* In strips, whose places wait for their light. */
+static abbe_result refract_here(abbe_refraction_pass *pass, abbe_error *error) {
+  enum { STRIP = 1 << 14, LIKELY = 12 };
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  const size_t pixels = abbe_gpu_read_count(gpu, pass->pixels);
+  abbe_camera_paths paths;
+  tell_paths(pass, &paths);
+  for (size_t first = 0; first < pixels; first += STRIP) {
+    const size_t count = pixels - first < STRIP ? pixels - first : STRIP;
+    size_t places = LIKELY * STRIP;
+    do {
+      ABBE_TRY(make_room(pass, places, 4 * ABBE_SIGHT_PIXEL_WORDS * STRIP, error));
+      const abbe_sight_buffers to = {pass->pixels, pass->sights, pass->sight_pixels,
+                                     pass->sight_room};
+      places = abbe_camera_paths_follow(&paths, &to, first, count);
+    } while (places > pass->sight_room);
+    look_up(pass, first, count);
+    ABBE_TRY(abbe_gpu_tell(gpu, 0.5 + 0.5 * (double)(first + count) / (double)pixels, error));
+  }
+  return abbe_gl_check(gpu->gl, "the camera's paths", error);
 }
 
 static abbe_result show_refractors(abbe_refraction_pass *pass, abbe_error *error) {
@@ -404,9 +462,10 @@ static abbe_result show_refractors(abbe_refraction_pass *pass, abbe_error *error
   if (!pass->whole) list_pixels(pass);
   if (pass->keeps) {
     const abbe_result result = pass->whole ? ABBE_OK : find_sights(pass, error);
-    if (result == ABBE_OK && !gpu->stopped) look_up(pass);
+    if (result == ABBE_OK && !gpu->stopped) look_up(pass, 0, samples[0] * samples[1]);
     return result;
   }
+  if (pass->here) return refract_here(pass, error);
   if (pass->shown != 0) /* what is looked up is not what is written over */
     gpu->gl->CopyImageSubData(pass->receivers->colour, GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, pass->shown,
                               GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, (GLsizei)samples[0],

@@ -32,6 +32,8 @@ typedef struct abbe_refraction_pass {
   GLuint pixels, refined_pixels; /* lists */
   GLuint merged;        /* list of pixels, where receivers have one sample for all of a pixel's */
   size_t pixel_threads; /* threads of a pixel */
+  bool here;            /* paths are followed by the processor's own threads */
+  size_t eye_bands;     /* bands of a pixel, at the most */
   bool keeps;           /* places of receivers: */
   GLuint look_up;       /* program */
   GLuint sights, sight_pixels;

@@ -12,6 +12,7 @@ layout(std430, binding = BINDING_PIXELS) readonly buffer PixelList {
   uint pixel[];  // x | y << 16
 };
 layout(rgba32f, binding = 0) writeonly uniform image2D picture;  // rgb, distance from the camera
+uniform uint pixel_first, pixel_end;  // those of the list that are looked at
 uniform mat3 xyz_from_rgb;
 mat3 own_xyz_from_rgb;
 
@@ -33,7 +34,7 @@ vec3 chain_light(uint first) {
     OF_RECEIVERS(CHOOSE)
     vec3 p = r.anchor.xyz + place.x * r.u.xyz + place.y * r.v.xyz;
     vec3 n = (sheet & 1) != 0 ? -r.normal.xyz : r.normal.xyz;
-    Shading s = shade(p, n, int(r.anchor.w), place + vec2(r.du.w, r.dv.w), 0);
+    Shading s = shade(p, n, int(r.anchor.w), place + vec2(r.du.w, r.dv.w), sheet);
     int band = int(sights[word + 6u]) - 1;
     vec3 xyz = own_xyz_from_rgb * (s.direct + s.caustic + s.fill);
     sum += weight * (band < 0 ? xyz : band_colour(band) * xyz);
@@ -46,8 +47,8 @@ void main() {
   copy_tables();
   copy_surroundings();
   own_xyz_from_rgb = read_now(xyz_from_rgb);
-  uint listed = thread_number();
-  if (listed >= pixel_count) return;
+  uint listed = thread_number(), at = pixel_first + listed;
+  if (at >= min(pixel_count, pixel_end)) return;
   uint word = listed * SIGHT_WORDS;
   float far = uintBitsToFloat(sight_pixels[word + 3u]);
   vec3 sum = uintBitsToFloat(uvec3(sight_pixels[word], sight_pixels[word + 1u], sight_pixels[word + 2u]));
@@ -58,5 +59,5 @@ void main() {
   }
   // At the rim an exact surface may miss the pixel that its triangles cover: what lies behind shows.
   if (far > 0.0)
-    imageStore(picture, ivec2(pixel[listed] & 0xffffu, pixel[listed] >> 16), vec4(rgb_from_xyz * sum, far));
+    imageStore(picture, ivec2(pixel[at] & 0xffffu, pixel[at] >> 16), vec4(rgb_from_xyz * sum, far));
 }

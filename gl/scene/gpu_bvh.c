@@ -326,6 +326,9 @@ static abbe_result grow_refractors(abbe_gpu_scene *scene, grove *g, forest *f, a
     result = add_mesh(g, f, &scene->local->object[scene->plan->refractor_object[i]].mesh, 0, NULL,
                       error);
     if (result == ABBE_OK) result = grow(scene, g, f, &scene->refractor_root[i], error);
+    if (result == ABBE_OK && scene->gpu->software)
+      result = abbe_ray_trees_add(&scene->trees, (const uint32_t(*)[4])f->texel,
+                                  scene->refractor_root[i], &scene->refractor_tree[i], error);
   }
   return result;
 }
@@ -352,12 +355,14 @@ abbe_result abbe_gpu_bvh_make(abbe_gpu_scene *scene, abbe_error *error) {
   forest f = {0};
   if (!scene->plan->bvh && scene->plan->receivers != ABBE_RECEIVER_BVH) return ABBE_OK;
   scene->refractor_root = calloc(most, sizeof *scene->refractor_root);
+  scene->refractor_tree = calloc(most, sizeof *scene->refractor_tree);
   grove g = {.mesh = calloc(most, sizeof *g.mesh),
              .surface = calloc(most, sizeof *g.surface),
              .side = calloc(most, sizeof *g.side),
              .face_first = calloc(most, sizeof *g.face_first)};
-  abbe_result result = scene->refractor_root == NULL || g.mesh == NULL || g.surface == NULL ||
-                               g.side == NULL || g.face_first == NULL
+  abbe_result result = scene->refractor_root == NULL || scene->refractor_tree == NULL ||
+                               g.mesh == NULL || g.surface == NULL || g.side == NULL ||
+                               g.face_first == NULL
                            ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy")
                            : grow_refractors(scene, &g, &f, error);
   if (result == ABBE_OK) result = grow_receivers(scene, &g, &f, error);

@@ -199,7 +199,9 @@ static void free_geometry(abbe_gpu_scene *scene) {
   memset(scene->bvh_texture, 0, sizeof scene->bvh_texture);
   abbe_receiver_charts_free(&scene->charts);
   free(scene->refractor_root);
-  scene->refractor_root = NULL;
+  free(scene->refractor_tree);
+  scene->refractor_root = scene->refractor_tree = NULL;
+  abbe_ray_trees_free(&scene->trees);
   scene->receiver_root = scene->bvh_depth = 0;
 }
 

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "colorimetry/rgb_space.h"
 #include "gl/device/gpu.h"
+#include "gl/scene/ray_trees.h"
 #include "gl/plan/facts/render_desc.h"
 #include "gl/plan/plan.h"
 #include "gl/scene/spectra/spectral_tables.h"
@@ -114,6 +115,8 @@ typedef struct abbe_gpu_scene {
   size_t *refractor_root;        /* [refractor_count] of its tree */
   size_t receiver_root;          /* root of the tree of all receivers that are traversed */
   size_t bvh_depth;
+  abbe_ray_trees trees;   /* of refractors, where a processor runs the shaders */
+  size_t *refractor_tree; /* [refractor_count] */
   /* [(light views + 1) x bands]: rgb of each light of unit power, last of the scene's illuminant */
   float haze_white[(ABBE_SCENE_MAX_LIGHTS + 1) * ABBE_PLAN_HAZE_BANDS][3];
 
