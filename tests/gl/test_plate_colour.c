@@ -138,7 +138,7 @@ TEST(a_plate_has_its_colour_while_it_moves) {
   hold("emerald", 0.006, BESIDE_GOLD, 4, 1, ABBE_COARSE_ALL);
 }
 
-/* Means of the pixels 22,14 to 42,34 as abbe trace has them after 2,800 passes of 64 x 64 photons
+/* Means of the pixels 22,14 to 42,34 as abbe trace has them after 2,800 passes of 64 photons
  * (emerald 3,600, sapphire 1,600), which know the dominant wavelengths to 0.4 nm. */
 static const struct {
   const char *stone;

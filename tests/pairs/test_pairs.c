@@ -12,6 +12,8 @@
 #define OF_A_SAMPLE                                                                                \
   "one sample a pixel, in its middle: facets of a stone show their means with four times as "      \
   "many"
+#define OF_A_BLUR                                                                                  \
+  "the trace blurs light that comes to what is seen through the stone: the longer, the nearer"
 static const struct {
   const char *stone, *company, *transport, *stage, *region, *what, *why;
 } known[] = {
@@ -19,6 +21,7 @@ static const struct {
     {"diamond", "ball", "layers", "balanced", "stone", "light", BY_LAYERS},
     {"diamond", "ball", "layers", "balanced", "caustic", "light", BY_LAYERS},
     {"diamond", "haze", "default", "balanced", "stone", "light", OF_A_SAMPLE},
+    {"ruby", "water", "pinhole", "balanced", "stone", "hue", OF_A_BLUR},
     {"ruby", "water", "pinhole", "balanced", "stone", "light", OF_A_SAMPLE},
 };
 
