@@ -25,14 +25,6 @@ static const abbe_inspect_picture *shown_of(const inspection *i) {
 
 /* ---- begin, end ---- */
 
-/* What is encoded already looks as it does elsewhere by the view Plain. */
-static size_t first_view(const char *views, bool encoded) {
-  const char *plain = encoded && views != NULL ? strstr(views, " / Plain\n") : NULL;
-  size_t view = 0;
-  for (const char *c = views; plain != NULL && c < plain; c++) view += *c == '\n';
-  return view;
-}
-
 abbe_result abbe_view_inspect_begin(abbe_view_session *app, abbe_error *error) {
   inspection *i = &app->inspection;
   i->stale = true;
@@ -43,8 +35,7 @@ abbe_result abbe_view_inspect_begin(abbe_view_session *app, abbe_error *error) {
   if (i->look.wavelength_nm == 0) i->look.wavelength_nm = 550;
   abbe_result result = abbe_display_list(app->ocio, &app->views, error);
   if (result == ABBE_OK)
-    result = abbe_view_session_choose_view(
-        app, first_view(app->views, i->pictures->picture[i->at].encoded), error);
+    result = abbe_view_session_begin_view(app, i->pictures->picture[i->at].encoded, error);
   if (result == ABBE_OK) result = abbe_ui_make(error);
   if (result == ABBE_OK && i->listener != NULL)
     result = abbe_view_listen_start(i->listener, app->judge.wake, error);
@@ -355,20 +346,12 @@ static void draw_look(abbe_view_session *app) {
 
 static void draw_histogram(const abbe_inspect *s) {
   const abbe_inspect_picture *p = &s->picture[s->at];
-  const double width = abbe_ui_panel_width(), high = 60, step = width / ABBE_INSPECT_BINS;
   const bool colour = abbe_inspect_is_colour(p->mix.kind) && !s->look.difference;
-  double x, y, most = 1;
-  char text[64];
-  if (!abbe_ui_place("histogram", width, high + 18, &x, &y)) return;
-  for (size_t k = 0; k < ABBE_INSPECT_BINS; k++) most = fmax(most, (double)p->bin[k]);
-  for (size_t k = 0; k < ABBE_INSPECT_BINS; k++) /* the square root, so that few are seen too */
-    abbe_ui_box(x + step * (double)k, y + high * (1 - sqrt((double)p->bin[k] / most)),
-                x + step * (double)(k + 1), y + high, DIM);
-  abbe_number_format(text, sizeof text, colour ? "Y %.3g" : "%.3g",
+  char least[64], most[64];
+  abbe_number_format(least, sizeof least, colour ? "Y %.3g" : "%.3g",
                      colour ? 0.18 * exp2(-10) : p->scale.min);
-  abbe_ui_label(x, y + high + 2, DIM, text);
-  abbe_number_format(text, sizeof text, "%.3g", colour ? 0.18 * exp2(6) : p->scale.max);
-  abbe_ui_label(x + width - 50, y + high + 2, DIM, text);
+  abbe_number_format(most, sizeof most, "%.3g", colour ? 0.18 * exp2(6) : p->scale.max);
+  abbe_view_chart_histogram(p->bin, ABBE_INSPECT_BINS, least, most);
 }
 
 static void draw_channels(const abbe_inspect_picture *p, const abbe_inspect_probe *q) {

@@ -81,6 +81,18 @@ abbe_result abbe_view_session_choose_view(abbe_view_session *session, size_t vie
   return ABBE_OK;
 }
 
+/* What is encoded already looks as it does elsewhere by the view Plain. */
+static size_t first_view(const char *views, bool encoded) {
+  const char *plain = encoded && views != NULL ? strstr(views, " / Plain\n") : NULL;
+  size_t view = 0;
+  for (const char *c = views; plain != NULL && c < plain; c++) view += *c == '\n';
+  return view;
+}
+
+abbe_result abbe_view_session_begin_view(abbe_view_session *app, bool encoded, abbe_error *error) {
+  return abbe_view_session_choose_view(app, first_view(app->views, encoded), error);
+}
+
 double abbe_view_session_rate(const abbe_view_session *session) {
   const size_t count = session->frame_count < 32 ? session->frame_count : 32;
   double sum = 0;

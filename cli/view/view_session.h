@@ -153,6 +153,9 @@ abbe_display_desc abbe_view_session_display(const abbe_view_session *session, si
 /* Another line of the list of displays and views; ABBE_COLOUR where it is broken. */
 abbe_result abbe_view_session_choose_view(abbe_view_session *session, size_t view,
                                           abbe_error *error);
+/* The first one: of what is encoded for a screen, Plain. */
+abbe_result abbe_view_session_begin_view(abbe_view_session *session, bool encoded,
+                                         abbe_error *error);
 /* Pictures a second while something moves, of the last ones; 0: nothing has moved. */
 double abbe_view_session_rate(const abbe_view_session *session);
 /* A value by its name, for scripts (docs/view.md lists them), or what a key was set to. False:

@@ -134,3 +134,16 @@ void abbe_view_chart_colours(const double (*xy_of)[2], size_t count, const doubl
   abbe_ui_label(x, y + high + 2, REC709, "Rec.709");
   abbe_ui_label(x + half, y + high + 2, ACESCG, "ACEScg");
 }
+
+void abbe_view_chart_histogram(const size_t *bin, size_t count, const char *least,
+                               const char *most) {
+  const double width = abbe_ui_panel_width(), high = 60, step = width / (double)count;
+  double x, y, greatest = 1;
+  if (!abbe_ui_place("histogram", width, high + 18, &x, &y)) return;
+  for (size_t k = 0; k < count; k++) greatest = fmax(greatest, (double)bin[k]);
+  for (size_t k = 0; k < count; k++)
+    abbe_ui_box(x + step * (double)k, y + high * (1 - sqrt((double)bin[k] / greatest)),
+                x + step * (double)(k + 1), y + high, DIM);
+  abbe_ui_label(x, y + high + 2, DIM, least);
+  abbe_ui_label(x + width - 50, y + high + 2, DIM, most);
+}
