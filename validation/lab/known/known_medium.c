@@ -319,6 +319,31 @@ static abbe_result add_shaft(abbe_known_run *run, bool above, double from, doubl
   return add_row(run, &row, 5e-2, result, &scene, from, to, error);
 }
 
+/* Light of 1 W/m2 goes straight down into a cube of air with haze, whose face fills the picture:
+ * gathers are cut by its walls. So little is scattered that a second time does not count. */
+static abbe_result add_cube(abbe_known_run *run, double from, double to, abbe_error *error) {
+  const double scattering = 0.05, side = 0.04;
+  abbe_scene scene = {0};
+  abbe_known_setting row = {.what = "a cube with haze of 0.05/m in the sun, all of its face",
+                            .unit = "W/(m2 sr)",
+                            .exact = -expm1(-2 * scattering * side) / 2 * abbe_medium_phase(0, 1),
+                            .reason = reason,
+                            .samples = 1 << 17,
+                            .side = 8,
+                            .channel = "Y"};
+  const abbe_result made = abbe_known_scene(
+      &scene, error,
+      "camera: {eye: [0, 0, 20], target: [0, 0, 0], up: [0, 1, 0], fov: 0.1123}\n"
+      "lights: [{name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1}]\n"
+      "objects:\n"
+      "- {name: cube, shape: box, size: [%.17g, %.17g, %.17g], material: air,\n"
+      "   medium: {scattering: %.17g}}\n"
+      "- {name: far off, shape: rectangle, width: 0.004, height: 0.004, reflectance: 0,\n"
+      "   transform: [{translate: [0, 0, -1]}]}\n",
+      side, side, side, scattering);
+  return add_row(run, &row, 3e-2, made, &scene, from, to, error);
+}
+
 abbe_result abbe_known_medium(abbe_known_run *run, abbe_error *error) {
   static const slab slabs[] = {
       {.scattering = 0.5, .thickness = 1, .sun_deg = 30, .view_deg = 50},
@@ -344,7 +369,8 @@ abbe_result abbe_known_medium(abbe_known_run *run, abbe_error *error) {
     result = add_slab(run, &slabs[i], 0.05 * i, 0.05 * (i + 1), error);
   if (result == ABBE_OK) result = add_left(run, 0.2, 0.22, error);
   if (result == ABBE_OK) result = add_reached(run, 0.22, 0.26, error);
-  if (result == ABBE_OK) result = add_pencil(run, "air", 0.26, 0.3, error);
+  if (result == ABBE_OK) result = add_pencil(run, "air", 0.26, 0.28, error);
+  if (result == ABBE_OK) result = add_cube(run, 0.28, 0.3, error);
   if (result == ABBE_OK) result = add_lamp(run, 0, 0.3, 0.35, error);
   if (result == ABBE_OK) result = add_lamp(run, 0.7, 0.35, 0.4, error);
   if (result == ABBE_OK) result = add_shaft(run, false, 0.4, 0.8, error);

@@ -127,9 +127,10 @@ static int find_faces(const abbe_shaft_photons *s, int medium, const float p[3],
   return count;
 }
 
-/* Mirrored at a face, and at two or three that stand at right angles, about. */
+/* Mirrored at a face, and at two or three that stand at right angles, about: what a gather lacks
+ * behind them. Light goes the way that it had, for it stands for the light before the face. */
 static void keep_mirrored(abbe_shaft_photons *s, const abbe_light_stretch *from, const float p[3],
-                          float glow) {
+                          float flux, float glow) {
   near_face face[FACES];
   const int count = find_faces(s, from->medium, p, face);
   for (int set = 1; set < 1 << count; set++) {
@@ -143,7 +144,7 @@ static void keep_mirrored(abbe_shaft_photons *s, const abbe_light_stretch *from,
       for (int k = 0; k < 3; k++) q[k] += beyond * face[i].n[k];
       square += face[i].distance * face[i].distance;
     }
-    if (right && square < s->radius * s->radius) keep(s, from, q, 0, glow);
+    if (right && square < s->radius * s->radius) keep(s, from, q, flux, glow);
   }
 }
 
@@ -168,7 +169,7 @@ void abbe_shaft_photons_take(void *user, const abbe_light_stretch *from) {
   for (int k = 0; k < 3; k++) p[k] = from->o[k] + (near + t) * from->d[k];
   splat(s, from, p, flux);
   keep(s, from, p, flux, glow);
-  if (glow > 0) keep_mirrored(s, from, p, glow);
+  if (from->medium >= 0) keep_mirrored(s, from, p, flux, glow);
 }
 
 void abbe_shaft_photons_free(abbe_shaft_photons *s) {
