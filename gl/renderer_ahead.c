@@ -64,6 +64,7 @@ void abbe_renderer_thread_ahead(abbe_renderer *r, const abbe_scene *scene,
   ahead->desc.progress_user = ahead;
   ahead->desc.width = small_side(r->plan.desc.width);
   ahead->desc.height = small_side(r->plan.desc.height);
+  ahead->desc.map_size = small_side(r->plan.desc.map_size);
   if (pthread_create(&ahead->thread, NULL, work, ahead) == 0)
     r->ahead = ahead;
   else
