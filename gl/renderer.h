@@ -93,8 +93,9 @@ abbe_result abbe_renderer_read(abbe_renderer *renderer, bool aovs, abbe_image *o
  * middle. scene and desc: those that the renderer has; then no frame is drawn, and the light stays.
  * Errors of abbe_renderer_change and abbe_renderer_frame too. */
 abbe_result abbe_renderer_read_blurred(abbe_renderer *renderer, const abbe_scene *scene,
-                                       const abbe_render_desc *desc, abbe_render_progress progress,
-                                       void *user, abbe_image *out, abbe_error *error);
+                                       const abbe_render_desc *desc, bool aovs,
+                                       abbe_render_progress progress, void *user, abbe_image *out,
+                                       abbe_error *error);
 
 /* A light's spectral map: channels X, Y, Z, flux a texel in W, with its layout and the light's name
  * in its attributes (abbe_map_layout_read). Of a light with a cube of maps only where the request

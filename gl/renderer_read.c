@@ -184,11 +184,12 @@ static void add_colours(const abbe_image *image, double share, abbe_image *sum) 
 }
 
 abbe_result abbe_renderer_read_blurred(abbe_renderer *r, const abbe_scene *scene,
-                                       const abbe_render_desc *desc, abbe_render_progress progress,
-                                       void *user, abbe_image *out, abbe_error *error) {
+                                       const abbe_render_desc *desc, bool aovs,
+                                       abbe_render_progress progress, void *user, abbe_image *out,
+                                       abbe_error *error) {
   const size_t count = r->plan.desc.lens;
   abbe_render_desc own = *desc;
-  ABBE_TRY(abbe_renderer_read(r, r->plan.desc.aovs, out, error));
+  ABBE_TRY(abbe_renderer_read(r, aovs, out, error));
   if (!(scene->camera.aperture > 0) || count < 2 || r->method != NULL) return ABBE_OK;
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < out->width * out->height; i++)

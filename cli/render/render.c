@@ -210,8 +210,8 @@ static abbe_result write_picture(request *q, const abbe_scene *scene, const abbe
   if (q->screen.alpha) sharp.camera.aperture = sharp.camera.focus = 0;
   abbe_progress bar;
   abbe_progress_begin(&bar, "lens", q->quiet || !(sharp.camera.aperture > 0));
-  abbe_result result =
-      abbe_renderer_read_blurred(renderer, &sharp, desc, abbe_progress_update, &bar, &image, error);
+  abbe_result result = abbe_renderer_read_blurred(renderer, &sharp, desc, q->aovs,
+                                                  abbe_progress_update, &bar, &image, error);
   abbe_progress_end(&bar);
   if (result == ABBE_OK) result = abbe_render_check_frame(q, &sharp, renderer, &image, error);
   if (result == ABBE_OK && !q->picture.traced_instead)

@@ -177,7 +177,8 @@ static abbe_result draw_frame(const abbe_render_request *q, const abbe_scene *sc
   if (result == ABBE_OK) free_scene(&shown[1]);
   if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, statistics, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_read_blurred(renderer, &shown[0].scene, desc, NULL, NULL, &image, error);
+    result = abbe_renderer_read_blurred(renderer, &shown[0].scene, desc, q->aovs, NULL, NULL,
+                                        &image, error);
   if (result == ABBE_OK) result = abbe_render_annotate(q, renderer, context, &image, error);
   if (result == ABBE_OK) result = abbe_frame_series_mark(&q->series, i, &image, error);
   if (result == ABBE_OK) result = write_frame(q, &image, q->series.first + i, error);
