@@ -251,6 +251,19 @@ abbe_result abbe_scene_input_at(const abbe_scene *scene, const char *materials,
   return load(scene->path, materials, &timed, out, error);
 }
 
+abbe_result abbe_scene_input_number(const abbe_scene *scene, const char *materials,
+                                    const abbe_scene_input_changes *changes, const char *key,
+                                    double *value, abbe_error *error) {
+  abbe_studio studio = changes->studio;
+  studio.more = changes->more;
+  const abbe_scene_options options = {.materials = materials,
+                                      .stone = changes->stone,
+                                      .set = changes->set,
+                                      .set_count = changes->set_count,
+                                      .studio = &studio};
+  return abbe_scene_number(scene->path, &options, key, value, error);
+}
+
 abbe_result abbe_scene_input_check_alpha(const abbe_scene *scene, abbe_error *error) {
   if (!scene->transparent || !(scene->camera.aperture > 0)) return ABBE_OK;
   return abbe_error_set(error, ABBE_UNSUPPORTED,

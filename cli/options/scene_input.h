@@ -141,6 +141,11 @@ abbe_result abbe_scene_input_at(const abbe_scene *scene, const char *materials,
                                 const abbe_scene_input_changes *changes, double time,
                                 abbe_scene *out, abbe_error *error);
 
+/* The number of `key` in the scene, as abbe_scene_number has it. */
+abbe_result abbe_scene_input_number(const abbe_scene *scene, const char *materials,
+                                    const abbe_scene_input_changes *changes, const char *key,
+                                    double *value, abbe_error *error);
+
 enum { ABBE_SCENE_INPUT_ALPHA_SAMPLES = 8 }; /* for a traced picture */
 /* Before a picture is traced: with --alpha its camera has no aperture, else ABBE_UNSUPPORTED. */
 abbe_result abbe_scene_input_check_alpha(const abbe_scene *scene, abbe_error *error);

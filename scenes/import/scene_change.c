@@ -101,6 +101,46 @@ abbe_result abbe_scene_change_set(abbe_yaml_edit *edit, const char *assignment, 
   return set(edit, path, equals + 1, error);
 }
 
+/* Names of numbers there, or of what holds some. */
+static const char *near_number(abbe_yaml *yaml, abbe_yaml_node parent, const char *word) {
+  const char *names[MOST_NAMES];
+  size_t count = 0;
+  for (size_t i = 0; i < abbe_yaml_count(yaml, parent) && count < MOST_NAMES; i++) {
+    double value;
+    const char *name = name_of(yaml, parent, i);
+    const abbe_yaml_node child = child_of(yaml, parent, i);
+    const bool serves =
+        !abbe_yaml_is_scalar(yaml, child) ||
+        abbe_yaml_length(yaml, child, "", -HUGE_VAL, HUGE_VAL, &value, NULL) == ABBE_OK;
+    if (name != NULL && serves && strcmp(name, word) != 0) names[count++] = name;
+  }
+  const char *nearest = abbe_nearest_word(word, names, count);
+  return nearest != NULL ? nearest : count > 0 ? names[0] : NULL;
+}
+
+abbe_result abbe_scene_change_number(const abbe_yaml_edit *edit, const char *path, double *value,
+                                     abbe_error *error) {
+  abbe_yaml *yaml = edit->yaml;
+  abbe_yaml_node at = abbe_yaml_root(yaml);
+  const char *step = path;
+  for (;;) {
+    size_t index = 0, used = 0;
+    if (!find_child(yaml, at, step, &index, &used)) return no_child(edit, at, path, step, error);
+    const abbe_yaml_node child = child_of(yaml, at, index);
+    if (step[used] == '\0') {
+      if (abbe_yaml_is_scalar(yaml, child) &&
+          abbe_yaml_length(yaml, child, step, -HUGE_VAL, HUGE_VAL, value, NULL) == ABBE_OK)
+        return ABBE_OK;
+      const char *near = near_number(yaml, at, step);
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: '%.120s' is no number%s%.*s%.60s%s",
+                            edit->name, path, near ? "; one near it is '" : "",
+                            near ? (int)(step - path) : 0, path, near ? near : "", near ? "'" : "");
+    }
+    at = child;
+    step += used + 1;
+  }
+}
+
 /* ---- materials ---- */
 
 static abbe_yaml_node objects_of(const abbe_yaml_edit *edit) {

@@ -338,21 +338,36 @@ abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
   return read_document(yaml, name, options, out, error);
 }
 
+static abbe_result read_changed(const char *path, const abbe_scene_options *options,
+                                abbe_yaml_edit *edit, abbe_error *error) {
+  char *text = NULL;
+  size_t bytes = 0;
+  abbe_result result = read_text(path, options, &text, &bytes, error);
+  if (result == ABBE_OK) result = change_text(text, bytes, path, options, edit, error);
+  free(text);
+  return result;
+}
+
 abbe_result abbe_scene_text(const char *path, const abbe_scene_options *options, char **out,
                             size_t *size, abbe_error *error) {
   abbe_yaml_edit edit = {0};
-  char *text = NULL;
-  size_t bytes = 0;
   *out = NULL;
   *size = 0;
-  abbe_result result = read_text(path, options, &text, &bytes, error);
-  if (result == ABBE_OK) result = change_text(text, bytes, path, options, &edit, error);
-  free(text);
+  const abbe_result result = read_changed(path, options, &edit, error);
   if (result == ABBE_OK) {
     *out = edit.text;
     *size = edit.size;
     edit.text = NULL;
   }
+  abbe_yaml_edit_free(&edit);
+  return result;
+}
+
+abbe_result abbe_scene_number(const char *path, const abbe_scene_options *options, const char *key,
+                              double *value, abbe_error *error) {
+  abbe_yaml_edit edit = {0};
+  abbe_result result = read_changed(path, options, &edit, error);
+  if (result == ABBE_OK) result = abbe_scene_change_number(&edit, key, value, error);
   abbe_yaml_edit_free(&edit);
   return result;
 }

@@ -38,6 +38,11 @@ abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
 abbe_result abbe_scene_text(const char *path, const abbe_scene_options *options, char **out,
                             size_t *size, abbe_error *error);
 
+/* The number at a path of `set` as it stands in that text, lengths in m. ABBE_INVALID_ARGUMENT
+ * where there is none, with one that is near. */
+abbe_result abbe_scene_number(const char *path, const abbe_scene_options *options, const char *key,
+                              double *value, abbe_error *error);
+
 /* What in a scene can be rendered and is hardly meant: sentences for people.
  *
  * Two of one name, a camera so far away that nothing is seen, a thing sunk into its table, a light

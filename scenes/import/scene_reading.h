@@ -195,6 +195,11 @@ abbe_result abbe_setting_place(const abbe_object_surface *surface, abbe_result b
  * path that leads nowhere, with the nearest key or name. */
 abbe_result abbe_scene_change_set(abbe_yaml_edit *edit, const char *assignment, abbe_error *error);
 
+/* The number, or the length in m, at such a path. ABBE_INVALID_ARGUMENT for what is none, with one
+ * that is near, and for a path that leads nowhere. */
+abbe_result abbe_scene_change_number(const abbe_yaml_edit *edit, const char *path, double *value,
+                                     abbe_error *error);
+
 /* "STONE": what all refractors are made of, which must be one material; or "NAME=STONE": what is
  * made of the material NAME, or the object NAME. ABBE_INVALID_ARGUMENT where nothing is. */
 abbe_result abbe_scene_change_material(abbe_yaml_edit *edit, const char *text, abbe_error *error);

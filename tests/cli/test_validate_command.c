@@ -15,8 +15,8 @@ TEST(a_group_as_text) {
  * together are what the README rounds down. */
 TEST(the_pages_count_the_answers) {
   static const char page[] = ABBE_SOURCE_DIR "/docs/validation.md";
-  static const char *const groups[] = {"prism",   "slit", "ball",    "nest",   "slab",
-                                       "fresnel", "film", "crystal", "rainbow"};
+  static const char *const groups[] = {"prism",   "slit", "ball",    "nest",    "slab",
+                                       "fresnel", "film", "crystal", "rainbow", "derive"};
   for (size_t i = 0; i < sizeof groups / sizeof *groups; i++) {
     assert_int_equal(
         run_line(

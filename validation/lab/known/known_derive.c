@@ -1,0 +1,315 @@
+/* Derivatives of single rays through slabs, a prism and a ball and off mirrors, by numbers of the
+ * scene. */
+#include "validation/lab/known/forms/closed_form.h"
+#include "validation/lab/known/known_group.h"
+
+#include "base/number.h"
+#include "spectral/dispersion/dispersion.h"
+#include "validation/measure/derive/derivative.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define N_BK7 1.51680003 /* at d: where a ray is aimed, least deviation being flat there */
+
+/* The light's direction, and in what is there, the key. */
+#define HEAD                                                                                       \
+  "camera: {eye: [0, -9, 9], target: [0, 0, -1]}\n"                                                \
+  "lights: [{name: sun, kind: directional, direction: [%.17g, 0, %.17g], irradiance: 1,\n"         \
+  "          illuminant: E}]\nobjects:\n"
+#define FLOOR                                                                                      \
+  "- {name: floor, shape: rectangle, width: 40, height: 40, reflectance: 0.5,\n"                   \
+  "   transform: [{translate: [0, 0, -1]}]}\n"
+#define WALL                                                                                       \
+  "- {name: wall, shape: rectangle, width: 40, height: 40, reflectance: 0.5, transform:\n"         \
+  "   [{rotate: {axis: [0, 1, 0], angle: 90}}, {translate: [5, 0, 0]}]}\n"
+#define SLAB(size, angle)                                                                          \
+  "- {name: slab, shape: box, size: [0.5, 0.5, " size "], material: n-bk7,\n"                      \
+  "   transform: [{rotate: {axis: [0, 1, 0], angle: " angle "}}]}\n"
+#define PRISM(apex)                                                                                \
+  "- {name: prism, shape: prism, apex: " apex ", side: 0.04, length: 0.06, material: n-bk7}\n"
+#define BALL(radius) "- {name: ball, shape: sphere, radius: " radius ", material: n-bk7}\n"
+#define MIRROR_BALL(radius)                                                                        \
+  "- {name: ball, shape: sphere, radius: " radius ", mirror: 1}\n"                                 \
+  "- {name: sky, shape: rectangle, width: 10, height: 10, reflectance: 0.5, transform:\n"          \
+  "   [{translate: [-9, 0, 9]}]}\n"
+#define FACET(angle)                                                                               \
+  "- {name: facet, shape: rectangle, width: 0.1, height: 0.1, mirror: 1,\n"                        \
+  "   transform: [{rotate: {axis: [0, 1, 0], angle: " angle "}}]}\n"                               \
+  "- {name: sky, shape: rectangle, width: 2, height: 2, reflectance: 0.5, transform:\n"            \
+  "   [{translate: [1.7, 0, 2]}]}\n"
+#define CUP(radius)                                                                                \
+  "- {name: cup, shape: lathe, around: 4096, profile: [[" radius ", -0.1], [" radius               \
+  ", 0.1]], mirror: 1}\n"
+
+/* What a ray's answer is a function of, beside what it is derived by. */
+typedef struct setting {
+  double n, lambda_nm, n_d, v_d, thickness, incidence, apex, radius, height, absorption, area;
+  double sun[2];
+} setting;
+
+/* A row: what is read of the brightest path, and the closed form of it as a function of the key. */
+typedef struct ray_row {
+  const char *quantity, *unit, *objects;
+  double value; /* of the key in the text; of a material 0 */
+  abbe_specular_shift shift, base;
+  double off; /* where the ray is on the light's window, from its middle, of its width */
+  double (*traced)(const abbe_specular_hit *hit, const setting *s);
+  double (*exact)(double key, const setting *s);
+  double share; /* of the exact value that it may be off */
+} ray_row;
+
+/* ---- what is read, and what is known ---- */
+
+static double aside(const abbe_specular_hit *h, const setting *s) {
+  (void)s;
+  return hypot(h->p[0], h->p[1]);
+}
+
+static double flux_of(const abbe_specular_hit *h, const setting *s) {
+  return h->flux / s->area;
+}
+
+static double turned(const abbe_specular_hit *h, const setting *s) {
+  const double came[3] = {s->sun[0], 0, s->sun[1]};
+  return abbe_known_angle(h->d, came);
+}
+
+/* Height below the middle at which it crosses the axis. */
+static double crossing(const abbe_specular_hit *h, const setting *s) {
+  (void)s;
+  return -(h->p[2] - h->p[0] * h->d[2] / h->d[0]);
+}
+
+static double crossing_above(const abbe_specular_hit *h, const setting *s) {
+  return -crossing(h, s);
+}
+
+static double along_x(const abbe_specular_hit *h, const setting *s) {
+  (void)s;
+  return fabs(h->p[0]);
+}
+
+/* In plan, light along x: where it crosses the diameter, from the axis. */
+static double crossing_in_plan(const abbe_specular_hit *h, const setting *s) {
+  (void)s;
+  return h->p[0] - h->p[1] * h->d[0] / h->d[1];
+}
+
+static double shift_by_n(double n, const setting *s) {
+  return abbe_closed_form_slab_shift(s->thickness, s->incidence, s->n + n);
+}
+
+static double shift_by_b(double b, const setting *s) {
+  return shift_by_n(b * 1e6 / (s->lambda_nm * s->lambda_nm), s);
+}
+
+static double shift_by_v(double v, const setting *s) {
+  return shift_by_n((s->n - s->n_d) * (s->v_d / (s->v_d + v) - 1), s);
+}
+
+static double shift_by_thickness(double thickness, const setting *s) {
+  return abbe_closed_form_slab_shift(thickness, s->incidence, s->n);
+}
+
+static double shift_by_angle(double degrees, const setting *s) {
+  return abbe_closed_form_slab_shift(s->thickness, degrees * ABBE_DEGREE, s->n);
+}
+
+static double passed_by(double n, double thickness, double absorption, const setting *s) {
+  const double r = abbe_closed_form_fresnel(s->incidence, n);
+  const double sine = sin(s->incidence) / n;
+  return (1 - r) * (1 - r) * exp(-absorption * thickness / sqrt(1 - sine * sine));
+}
+
+static double passed_by_n(double n, const setting *s) {
+  return passed_by(s->n + n, s->thickness, s->absorption, s);
+}
+
+static double passed_by_absorption(double more, const setting *s) {
+  return passed_by(s->n, s->thickness, s->absorption + more, s);
+}
+
+static double passed_by_thickness(double thickness, const setting *s) {
+  return passed_by(s->n, thickness, s->absorption, s);
+}
+
+static double least_by_n(double n, const setting *s) {
+  double deviation = NAN;
+  abbe_closed_form_prism_least(s->apex, s->n + n, &deviation);
+  return deviation;
+}
+
+static double least_by_apex(double degrees, const setting *s) {
+  double deviation = NAN;
+  abbe_closed_form_prism_least(degrees * ABBE_DEGREE, s->n, &deviation);
+  return deviation;
+}
+
+static double focus_by_n(double n, const setting *s) {
+  return abbe_closed_form_ball_crossing(s->radius, s->n + n, s->height);
+}
+
+static double focus_by_radius(double radius, const setting *s) {
+  return abbe_closed_form_ball_crossing(radius, s->n, s->height);
+}
+
+/* A ray that a circle reflects is as far from its middle along the axis as from where it met it. */
+static double mirror_focus(double radius, const setting *s) {
+  return radius / (2 * sqrt(1 - s->height * s->height / (radius * radius)));
+}
+
+static double image_by_tilt(double degrees, const setting *s) {
+  (void)s;
+  return 2 * tan(2 * degrees * ABBE_DEGREE);
+}
+
+/* ---- rays ---- */
+
+#define CLEAR                                                                                      \
+  { 0 }
+#define BY_N                                                                                       \
+  { .material = "n-bk7", .n = 1e-5 }
+#define BY_B                                                                                       \
+  { .material = "n-bk7", .b_um2 = 1e-5 }
+#define BY_V                                                                                       \
+  { .material = "n-bk7", .v = 0.01 }
+#define BY_ABSORPTION                                                                              \
+  { .material = "n-bk7", .absorption = 1e-3 }
+#define SMOKY                                                                                      \
+  { .material = "n-bk7", .absorption = 20 }
+static const ray_row rays[] = {
+    {"a slab's shift by its index", "m", HEAD FLOOR SLAB("0.03", "40"), 0, BY_N, CLEAR, 0, aside,
+     shift_by_n, 1e-6},
+    {"a slab's shift by Cauchy's B", "m/um2", HEAD FLOOR SLAB("0.03", "40"), 0, BY_B, CLEAR, 0,
+     aside, shift_by_b, 1e-6},
+    {"a slab's shift by its Abbe number", "m", HEAD FLOOR SLAB("0.03", "40"), 0, BY_V, CLEAR, 0,
+     aside, shift_by_v, 1e-5},
+    {"a slab's shift by its thickness", "m/m", HEAD FLOOR SLAB("%.17g", "40"), 0.03, CLEAR, CLEAR,
+     0, aside, shift_by_thickness, 1e-6},
+    {"a slab's shift by its tilt", "m/degree", HEAD FLOOR SLAB("0.03", "%.17g"), 40, CLEAR, CLEAR,
+     0, aside, shift_by_angle, 1e-6},
+    {"what a tilted slab passes by its index", "1", HEAD FLOOR SLAB("0.03", "40"), 0, BY_N, CLEAR,
+     0, flux_of, passed_by_n, 1e-6},
+    {"what it passes by its absorption", "m", HEAD FLOOR SLAB("0.03", "40"), 0, BY_ABSORPTION,
+     SMOKY, 0, flux_of, passed_by_absorption, 1e-6},
+    {"what it passes by its thickness", "1/m", HEAD FLOOR SLAB("%.17g", "40"), 0.03, SMOKY, SMOKY,
+     0, flux_of, passed_by_thickness, 1e-6},
+    {"a prism's least deviation by its index", "rad", HEAD WALL PRISM("60"), 0, BY_N, CLEAR, 0,
+     turned, least_by_n, 1e-6},
+    {"a prism's least deviation by its apex", "rad/degree", HEAD WALL PRISM("%.17g"), 60, CLEAR,
+     CLEAR, 0, turned, least_by_apex, 1e-6},
+    {"where a ball brings a ray to its axis, by its index", "m", HEAD FLOOR BALL("0.05"), 0, BY_N,
+     CLEAR, 0.1, crossing, focus_by_n, 1e-6},
+    {"the same by its radius", "m/m", HEAD FLOOR BALL("%.17g"), 0.05, CLEAR, CLEAR, 0.1, crossing,
+     focus_by_radius, 1e-6},
+    {"a mirror ball's focus by its radius", "m/m", HEAD FLOOR MIRROR_BALL("%.17g"), 0.05, CLEAR,
+     CLEAR, 0.1, crossing_above, mirror_focus, 1e-6},
+    {"a facet's image by its tilt", "m/degree", HEAD FLOOR FACET("%.17g"), 20, CLEAR, CLEAR, 0,
+     along_x, image_by_tilt, 1e-6},
+    {"where a cup's wall brings a ray to its diameter, by its radius", "m/m",
+     HEAD FLOOR CUP("%.17g"), 0.5, CLEAR, CLEAR, 0.05, crossing_in_plan, mirror_focus, 1e-3},
+};
+enum { RAYS = sizeof rays / sizeof *rays };
+
+static void aim(const ray_row *row, setting *s) {
+  double deviation;
+  s->sun[0] = 0;
+  s->sun[1] = -1;
+  if (row->traced == turned) {
+    abbe_closed_form_prism_least(s->apex, N_BK7, &deviation);
+    s->sun[0] = cos(deviation / 2);
+    s->sun[1] = sin(deviation / 2);
+  } else if (row->traced == crossing_in_plan) {
+    s->sun[0] = cos(20 * ABBE_DEGREE);
+    s->sun[1] = -sin(20 * ABBE_DEGREE);
+  }
+}
+
+/* The brightest path of the ray, in a scene in which the key is `key`. */
+static abbe_result follow(const ray_row *row, const setting *s, double key,
+                          const abbe_specular_shift *shift, const abbe_specular *base,
+                          abbe_scene *scene, abbe_specular *out, abbe_specular_hit *hit,
+                          abbe_error *error) {
+  abbe_specular_wave wave;
+  abbe_specular_tree tree;
+  ABBE_TRY(abbe_known_scene(scene, error, row->objects, s->sun[0], s->sun[1], key, key));
+  ABBE_TRY(abbe_specular_make(scene, 0, shift, out, error));
+  if (base != NULL) ABBE_TRY(abbe_specular_match(out, base, row->quantity, error));
+  ABBE_TRY(abbe_specular_wave_make(out, s->lambda_nm, &wave, error));
+  const double up = row->traced == crossing_in_plan ? 0.15 : 0; /* m: over the near wall */
+  const double at[4] = {0.5 + row->off, 0.5 + up / (2 * out->radius), 0.5, 0.5};
+  abbe_specular_trace(out, &wave, at, 3, &tree);
+  *hit = (abbe_specular_hit){.p = {NAN, NAN, NAN}};
+  for (size_t i = 0; i < tree.count; i++)
+    if (tree.hit[i].flux > hit->flux) *hit = tree.hit[i];
+  return ABBE_OK;
+}
+
+static abbe_result add_ray(abbe_known_run *run, const ray_row *row, abbe_error *error) {
+  setting s = {.lambda_nm = ABBE_LINE_F_NM,
+               .thickness = 0.03,
+               .incidence = 40 * ABBE_DEGREE,
+               .apex = 60 * ABBE_DEGREE,
+               .radius = row->value > 0 ? row->value : 0.05,
+               .absorption = row->base.absorption};
+  if (row->traced == turned) s.lambda_nm = ABBE_LINE_D_NM;
+  abbe_scene scene[3] = {{0}};
+  abbe_specular specular[3] = {{0}};
+  abbe_specular_hit hit[3];
+  const double step = row->value != 0
+                          ? 1e-5 * row->value
+                          : row->shift.n + row->shift.b_um2 + row->shift.v + row->shift.absorption;
+  aim(row, &s);
+  abbe_result result =
+      follow(row, &s, row->value, &row->base, NULL, &scene[2], &specular[2], &hit[2], error);
+  for (int i = 0; i < 2 && result == ABBE_OK; i++) {
+    const double by = i == 0 ? -1 : 1;
+    abbe_specular_shift shift = row->base;
+    shift.material = row->shift.material;
+    if (row->value == 0) {
+      shift.n += by * row->shift.n;
+      shift.b_um2 += by * row->shift.b_um2;
+      shift.v += by * row->shift.v;
+      shift.absorption += by * row->shift.absorption;
+    }
+    const double key = row->value != 0 ? row->value + by * step : 0;
+    result = follow(row, &s, key, &shift, &specular[2], &scene[i], &specular[i], &hit[i], error);
+  }
+  if (result == ABBE_OK) {
+    const double window = 2 * specular[2].radius;
+    s.area = window * window;
+    s.height = row->off * window;
+    for (size_t i = 0; i < scene[2].object_count; i++) {
+      const abbe_material *m = scene[2].object[i].material;
+      if (m == NULL) continue;
+      const abbe_dispersion_numbers numbers = abbe_dispersion_describe(&m->dispersion);
+      s.n = abbe_dispersion_n(&m->dispersion, s.lambda_nm);
+      s.n_d = numbers.n_d;
+      s.v_d = numbers.v_d;
+    }
+    abbe_known_answer answer = {.unit = row->unit,
+                                .reason = "differences over 1e-5 of a key: their square, and the "
+                                          "rounding of doubles over them"};
+    abbe_number_format(answer.quantity, sizeof answer.quantity, "%s", row->quantity);
+    answer.exact =
+        (row->exact(row->value + step, &s) - row->exact(row->value - step, &s)) / (2 * step);
+    answer.traced = (row->traced(&hit[1], &s) - row->traced(&hit[0], &s)) / (2 * step);
+    answer.tolerance = row->share * fabs(answer.exact);
+    if (row->share > 1e-4)
+      answer.reason = "1e-3 of it: the cup's wall has 4096 flat faces with rounded normals";
+    result = abbe_known_add(run, answer, error);
+  }
+  for (int i = 0; i < 3; i++) {
+    abbe_specular_free(&specular[i]);
+    abbe_scene_free(&scene[i]);
+  }
+  return result;
+}
+
+abbe_result abbe_known_derive(abbe_known_run *run, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (int i = 0; i < RAYS && result == ABBE_OK; i++) result = add_ray(run, &rays[i], error);
+  return result;
+}
