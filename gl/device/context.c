@@ -1,8 +1,10 @@
 #include "gl/device/context.h"
 
+#include "base/number.h"
 #include "gl/device/bindings.h"
 #include "gl/device/context_backend.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -108,6 +110,18 @@ static abbe_result make_one(abbe_context_backend kind, bool osmesa, size_t devic
   return finish(context, context->native.lookup, result, out, error);
 }
 
+/* Which of EGL's GPUs is tried first, by the environment. */
+static abbe_result first_gpu(size_t *out, abbe_error *error) {
+  const char *text = getenv("ABBE_GPU"), *end;
+  double number = 0;
+  if (text != NULL && (!abbe_number_read(text, &end, &number) || *end != '\0' || number < 0 ||
+                       number > 63 || number != floor(number)))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "ABBE_GPU is '%.40s'; it is the number of a GPU, from 0 to 63", text);
+  *out = (size_t)number;
+  return ABBE_OK;
+}
+
 /* EGL's devices in turn, then OSMesa for the CPU; the error is of the last that is there, without
  * what to do, and ABBE_UNSUPPORTED where none is. */
 static abbe_result make_of_kind(abbe_context_backend kind, abbe_context **out, abbe_error *error) {
@@ -117,8 +131,10 @@ static abbe_result make_of_kind(abbe_context_backend kind, abbe_context **out, a
                      kind == ABBE_CONTEXT_GPU ? "there is no GPU with an EGL driver"
                                               : "there is no OpenGL for the CPU, neither EGL's "
                                                 "software device nor OSMesa");
-  bool osmesa = false, more = true;
-  for (size_t device = 0; more; device++) {
+  size_t device = 0;
+  if (kind == ABBE_CONTEXT_GPU) ABBE_TRY(first_gpu(&device, error));
+  bool osmesa = false;
+  for (bool more = true; more; device++) {
     const abbe_result one = make_one(kind, osmesa, device, out, &last);
     if (one == ABBE_OK) return ABBE_OK;
     if (one != ABBE_UNSUPPORTED) {

@@ -29,7 +29,7 @@ typedef enum abbe_context_backend {
 typedef struct abbe_context abbe_context;
 
 /* Makes a context and makes it current. Every device of the kind that is asked for is tried in
- * EGL's order. ABBE_GL names the last driver that was tried, what it lacks and what to do. EGL's
+ * EGL's order, GPUs from number ABBE_GPU of the environment on. ABBE_GL names the last driver that was tried, what it lacks and what to do. EGL's
  * display stays open until the process ends: contexts of others may live on it. */
 abbe_result abbe_context_make(abbe_context_backend backend, abbe_context **out, abbe_error *error);
 

@@ -170,6 +170,15 @@ TEST(the_device_that_works_is_taken) {
   tried = 0;
   make_described(ABBE_CONTEXT_GPU, "gpu: ");
   assert_int_equal(tried, 2);
+  setenv("ABBE_GPU", "1", 1);
+  make_described(ABBE_CONTEXT_GPU, "gpu: ");
+  assert_int_equal(tried, 3);
+  setenv("ABBE_GPU", "2", 1);
+  REFUSED(ABBE_GL, "no GPU", abbe_context_make(ABBE_CONTEXT_GPU, &context, &error));
+  setenv("ABBE_GPU", "1.5", 1);
+  REFUSED(ABBE_INVALID_ARGUMENT, "ABBE_GPU is '1.5'",
+          abbe_context_make(ABBE_CONTEXT_GPU, &context, &error));
+  unsetenv("ABBE_GPU");
   REFUSED(ABBE_GL, "no OpenGL for the CPU", abbe_context_make(ABBE_CONTEXT_CPU, &context, &error));
   assert_contains(last_error.text, "llvmpipe");
 }

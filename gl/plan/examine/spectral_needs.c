@@ -465,8 +465,8 @@ static void note_roughness(const abbe_object *o, abbe_plan *plan) {
     most = fmax(most, c->alpha);
   }
   abbe_plan_note(plan,
-                 "%s: %.3g %% of its surface is rough, alpha %.3g to %.3g; it is drawn polished, "
-                 "and 'abbe trace' follows light from facet to facet of it",
+                 "%s: %.3g %% of its surface is rough, alpha %.3g to %.3g; drawn polished, and "
+                 "'abbe trace' follows light from facet to facet",
                  o->name, 100 * rough / all, least, most);
 }
 
@@ -475,11 +475,9 @@ static void note_covered_films(const abbe_scene *scene, const abbe_object *objec
                                abbe_plan *plan) {
   for (size_t r = 0; r < plan->refractor_count; r++) {
     const abbe_object *other = object_of(scene, plan, r);
-    if (other == object || other->cloud || plan->mirror[r] || !abbe_reach_overlap(object, other))
-      continue;
-    abbe_plan_note(plan, "%s: its films are left out where it touches another refractor, as '%s'",
-                   object->name, other->name);
-    return;
+    if (other != object && !other->cloud && !plan->mirror[r] && abbe_reach_overlap(object, other))
+      abbe_plan_note(plan, "%s: its films are left out where it touches '%s'", object->name,
+                     other->name);
   }
 }
 
@@ -495,8 +493,7 @@ void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan) {
   note_polarisation(scene, plan);
   if (scene->camera.aperture > 0)
     abbe_plan_note(plan,
-                   "the camera has an aperture: a picture is the mean of %zu from places on it; "
-                   "'abbe view' is sharp",
+                   "the camera has an aperture: a picture is the mean of %zu; 'abbe view' is sharp",
                    plan->desc.lens);
   if (plan->camera_sees_refractor && !shine_alike(scene, plan->desc.min_nm, plan->desc.max_nm))
     abbe_plan_note(plan, "through refractors, colours are split by the first light's illuminant");
