@@ -14,6 +14,8 @@
 /* Rays for all lights together, as many for all around, and for a light at the least. */
 enum { RAYS = 4096, LEAST_RAYS = 128 };
 enum { CELLS = ABBE_PLAN_GLOW_CELLS, ALL_CELLS = CELLS * CELLS * CELLS };
+/* In place of a unit. */
+enum { ASKS = -1 };
 /* Places of a cell, a side, that are asked whether they are inside. */
 enum { PLACES = 4 };
 
@@ -97,7 +99,7 @@ static double aim_cone(const asked *a, const abbe_light *light, const double u[4
   abbe_vector_subtract(a->centre, light->position, to);
   const double sine = a->radius / fmax(abbe_vector_length(to), 1e-30);
   const double least = sine < 1 ? sqrt(1 - sine * sine) : -1, z = 1 - u[0] * (1 - least);
-  abbe_vector_normalise(to);
+  if (!abbe_vector_normalise(to)) to[2] = 1; /* the light stands in the middle */
   turn(to, z, u[1], sqrt(fmax(1 - z * z, 0)), d);
   return 2 * ABBE_PI * (1 - least) * light->power * abbe_light_profile(light, d);
 }
@@ -188,14 +190,14 @@ static abbe_result count_photons(const asked *a, const abbe_illuminant *illumina
   return ABBE_OK;
 }
 
-/* Photons of each ray's bands, were all absorbed; their sum. */
-static abbe_result share_photons(const asked *a, double *sum, abbe_error *error) {
+/* Photons of each ray's bands, were all absorbed of what comes along it; the most of a band. */
+static abbe_result share_photons(const asked *a, double *most, abbe_error *error) {
   const abbe_scene *scene = scene_of(a->pass)->local;
   const abbe_illuminant *known = NULL;
   double *photons = calloc(a->bands + 1, sizeof *photons);
   abbe_result result =
       photons != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for glow");
-  *sum = 0;
+  *most = 0;
   for (size_t i = 0; i < a->rays && result == ABBE_OK; i++) {
     const abbe_light *light = light_of(a, i);
     const abbe_illuminant *own = light != NULL ? &light->illuminant : abbe_scene_illuminant(scene);
@@ -203,8 +205,10 @@ static abbe_result share_photons(const asked *a, double *sum, abbe_error *error)
     if (!same) result = count_photons(a, own, photons, error);
     known = own;
     for (size_t b = 0; b < a->bands && result == ABBE_OK; b++) {
-      a->band[i * a->bands + b][0] = (float)(a->weight[i] * photons[b]);
-      *sum += a->weight[i] * photons[b];
+      float *band = a->band[i * a->bands + b];
+      const double arrive = a->weight[i] * photons[b] * fmax((double)band[3], 0);
+      band[0] = (float)arrive;
+      *most = fmax(*most, arrive);
     }
   }
   free(photons);
@@ -212,7 +216,7 @@ static abbe_result share_photons(const asked *a, double *sum, abbe_error *error)
 }
 
 /* Follows the first of the rays: adds what they excite by that unit to the sums, or, of 0, says
- * what they see. */
+ * what they see; of ASKS what light comes along them. */
 static abbe_result follow(asked *a, size_t rays, double unit, abbe_error *error) {
   const abbe_gpu_scene *scene = scene_of(a->pass);
   abbe_gpu *gpu = scene->gpu;
@@ -233,7 +237,7 @@ static abbe_result follow(asked *a, size_t rays, double unit, abbe_error *error)
   abbe_gpu_bind_storage(gpu, BINDING_GLOW_SUMS, a->pass->sums);
   abbe_gpu_dispatch(gpu, program, (rays * a->bands + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP);
   gpu->gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  if (unit == 0) {
+  if (unit <= 0) {
     gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
     gpu->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)of_rays, (GLsizeiptr)of_bands,
                               a->band);
@@ -301,19 +305,21 @@ static void shine(const asked *a) {
       pass->light[r][c] += scene_of(pass)->rgb_from_xyz[3 * k + c] * (float)(xyz[k] / fmax(met, 1));
 }
 
-/* The first rays find what excites it, the second what of that they see. */
+/* The first rays find what light there is, the second what of it excites the refractor, the third
+ * what of that they see. */
 static abbe_result light_up(asked *a, abbe_error *error) {
   abbe_glow_pass *pass = a->pass;
-  double photons;
+  double most;
   for (int c = 0; c < 3; c++) {
     pass->low[a->refractor][c] = (float)a->object->min[c];
     pass->size[a->refractor][c] = (float)(a->object->max[c] - a->object->min[c]);
   }
   measure(a);
   for (size_t i = 0; i < a->rays; i++) aim(a, i);
-  ABBE_TRY(share_photons(a, &photons, error));
-  if (!(photons > 0)) return ABBE_OK;
-  const double unit = 0x1p36 / photons;
+  ABBE_TRY(follow(a, a->rays, ASKS, error));
+  ABBE_TRY(share_photons(a, &most, error));
+  if (!(most > 0)) return ABBE_OK;
+  const double unit = 0x1p31 / most; /* that of a ray fits in a word */
   abbe_gpu_clear_buffer(scene_of(pass)->gpu, pass->sums);
   ABBE_TRY(follow(a, a->rays, unit, error));
   fill_cells(a, unit);

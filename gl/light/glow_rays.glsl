@@ -1,10 +1,10 @@
 // Rays to a refractor that glows: what of each band makes it glow is added to its cells; or XYZ of what it sends back along
-// each ray.
+// each ray. First what comes along each ray is asked.
 
 layout(std430, binding = BINDING_GLOW) buffer Glow {
   vec4 glow[];  // two a ray: where it begins, and 0: light from all around, 1: from a light there, 2: from one far off; its
                 // direction; then one a ray and wavelength: its photons, were all of them absorbed; or what it sends back, and
-                // whether there is a refractor
+                // whether there is a refractor, or, asked first, what comes along it
 };
 uniform uint glow_rays;
 
@@ -60,7 +60,11 @@ void main() {
   take_band(0, int(listed % count));
   float mirrored;
   uint place = 2u * glow_rays + listed;
-  glow_arrives = met && glow_unit > 0.0 ? glow[place].x * light_of_ray(from.w) * glow_unit : 0.0;
+  if (glow_unit < 0.0) {
+    glow[place].w = met ? light_of_ray(from.w) : 0.0;
+    return;
+  }
+  glow_arrives = glow[place].x * glow_unit;
   if (met) {
 #ifdef WALK
 #ifdef CRYSTALS

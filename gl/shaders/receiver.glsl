@@ -187,8 +187,8 @@ vec3 glow_irradiance(vec3 p, vec3 n) {
   vec3 sum = vec3(0);
   for (int r = 0; r < REFRACTORS; r++) {
     vec3 to = glow_ball[r].xyz - p;
-    float distance2 = max(dot(to, to), glow_ball[r].w * glow_ball[r].w);
-    sum += glow_light[r] * (PI * glow_ball[r].w * glow_ball[r].w / distance2 * max(dot(n, to) * inversesqrt(max(distance2, 1e-30)), 0.0));
+    float distance2 = max(max(dot(to, to), glow_ball[r].w * glow_ball[r].w), 1e-30);
+    sum += glow_light[r] * (PI * glow_ball[r].w * glow_ball[r].w / distance2 * max(dot(n, to) * inversesqrt(distance2), 0.0));
   }
   return sum;
 }

@@ -209,12 +209,8 @@ static double emitted_y(void) {
   return sum * 450 / xyz[1];
 }
 
-/* Light of 1 W/m2 meets the plate straight on, and so does the camera: its path goes to and fro,
- * as the light does, and comes to all of the glow. */
-static void hold_glow(double depth, const char *beside) {
-  const double thickness_m = 0.02, r = pow((GLOW_N - 2.0) / (GLOW_N + 2), 2), e = exp(-depth);
-  const double taken = (1 - r) * (1 - e) / (1 - r * e);
-  const double wanted = 0.8 * taken * emitted_y() / (4 * ABBE_PI) / (GLOW_N * GLOW_N / 4.0);
+/* Mean Y that the camera sees in the middle of the first object, which glows. */
+static double glow_seen(double per_m, const char *text) {
   const abbe_render_desc desc = {.width = GLOW_SIDE,
                                  .height = GLOW_SIDE,
                                  .wavelengths = 7,
@@ -224,7 +220,26 @@ static void hold_glow(double depth, const char *beside) {
                                  .space = ABBE_RGB_SPACE_XYZ};
   abbe_material material;
   double got = 0;
-  OWNED(abbe_scene, scene) = scene_of(
+  OWNED(abbe_scene, scene) = scene_of(text);
+  glow_by(per_m, &material);
+  scene.object[0].material = &material;
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
+  OWNED(abbe_image, image) = picture_of(renderer);
+  for (size_t i = 0; i < GLOW_SIDE * GLOW_SIDE; i++)
+    got += (double)image.data[i * image.channels + 1] / (GLOW_SIDE * GLOW_SIDE);
+  abbe_spectrum_free(material.fluorescence.excitation);
+  abbe_spectrum_free(material.fluorescence.emission);
+  return got;
+}
+
+/* Light of 1 W/m2 meets the plate straight on, and so does the camera: its path goes to and fro,
+ * as the light does, and comes to all of the glow. */
+static void hold_glow(double depth, const char *beside) {
+  const double thickness_m = 0.02, r = pow((GLOW_N - 2.0) / (GLOW_N + 2), 2), e = exp(-depth);
+  const double taken = (1 - r) * (1 - e) / (1 - r * e);
+  const double wanted = 0.8 * taken * emitted_y() / (4 * ABBE_PI) / (GLOW_N * GLOW_N / 4.0);
+  const double got = glow_seen(
+      depth / thickness_m,
       printed("camera: {eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 2}\n"
               "lights:\n"
               "- {name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1,\n"
@@ -234,16 +249,8 @@ static void hold_glow(double depth, const char *beside) {
               "- {name: corner, shape: rectangle, width: 0.002, height: 0.002, reflectance: 0,\n"
               "   transform: [{translate: [0.03, 0.03, -1]}]}\n",
               thickness_m, beside));
-  glow_by(depth / thickness_m, &material);
-  scene.object[0].material = &material;
-  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
-  OWNED(abbe_image, image) = picture_of(renderer);
-  for (size_t i = 0; i < GLOW_SIDE * GLOW_SIDE; i++)
-    got += (double)image.data[i * image.channels + 1] / (GLOW_SIDE * GLOW_SIDE);
   print_message("a depth of %g: Y of %.4f, %.4f by the closed form\n", depth, got, wanted);
   assert_near(got / wanted, 1, 0.02);
-  abbe_spectrum_free(material.fluorescence.excitation);
-  abbe_spectrum_free(material.fluorescence.emission);
 }
 
 TEST(a_plate_glows) {
@@ -251,4 +258,23 @@ TEST(a_plate_glows) {
   hold_glow(4, "");
   hold_glow(0.2, BESIDE_GLASS);
   hold_glow(4, BESIDE_GOLD);
+}
+
+TEST(glow_keeps_to_light_of_any_power) {
+  static const double radiance[] = {1, 1e-7, 1e7};
+  double share[3];
+  for (int i = 0; i < 3; i++) {
+    share[i] =
+        glow_seen(
+            200,
+            printed("camera: {eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 2}\n"
+                    "environment: {uniform: %g}\nobjects:\n"
+                    "- {name: plate, shape: box, size: [0.2, 0.2, 0.02], material: n-bk7}\n"
+                    "- {name: black, shape: rectangle, width: 0.2, height: 0.2, reflectance: 0,\n"
+                    "   transform: [{translate: [0, 0, -1]}]}\n",
+                    radiance[i])) /
+        radiance[i];
+    print_message("a radiance of %g: Y of %.5f of it\n", radiance[i], share[i]);
+    assert_near(share[i] / share[0], 1, 1e-4);
+  }
 }
