@@ -3,6 +3,7 @@
 #include "tests/check.h"
 
 #include "base/maths.h"
+#include "spectral/uniaxial.h"
 
 #define DIAMOND 2.417
 #define GLASS 1.5
@@ -54,6 +55,24 @@ TEST(polarisers_and_plates_between_them) {
   assert_near(two_sheets(&half, 90, 45), 0.5, 1e-15);
 }
 
+/* Of quartz at 589.3 nm, axis in its face: 16.1896 um make a quarter of a wave, whose sixth digit
+ * is 1e-6 of the light. */
+TEST(a_quarter_wave_plate_of_quartz) {
+  const abbe_uniaxial air = {1, 1, {0, 0, 1}}, quartz = {1.5442, 1.5533, {0, 1, 0}};
+  const double up[3] = {0, 0, 1}, down[3] = {0, 0, -1}, waves = 16.1896 / 0.5893;
+  abbe_uniaxial_split s;
+  abbe_uniaxial_meet_unpolarised(&air, &quartz, up, down, &s);
+  const double o = s.transmitted[ABBE_UNIAXIAL_ORDINARY].index,
+               e = s.transmitted[ABBE_UNIAXIAL_EXTRAORDINARY].index;
+  assert_near(0.5893 / 4 / (e - o), 16.1896, 5e-5);
+  const abbe_jones plate = {
+      {{cexp(2 * ABBE_PI * I * o * waves), 0}, {0, cexp(2 * ABBE_PI * I * e * waves)}}};
+  assert_near(two_sheets(&plate, 90, 45), 0.25, 2e-6);
+  double circular[4] = {1, 0, 1, 0};
+  abbe_jones_apply(&plate, circular, circular);
+  assert_near(fabs(circular[3]), 1, 1e-10);
+}
+
 /* Ex = 1 and Ey = -i: clockwise to one who looks into the light. */
 TEST(the_sign_of_circular_light) {
   const abbe_jones right = {{{1, 0}, {-I, 0}}};
@@ -78,6 +97,42 @@ TEST(the_angle_of_brewster) {
   assert_near(abbe_stokes_degree(s), 0.0798722, 5e-8);
   assert_near(diamond, 67.5234, 5e-5);
   assert_near(face(1, DIAMOND, 0, diamond).reflected[ABBE_FILM_S], 0.500815, 5e-7);
+}
+
+/* One face each, their planes of incidence parallel and at right angles. */
+TEST(two_glass_mirrors_at_the_angle_of_brewster) {
+  const abbe_jones j = mirror(1, GLASS, 0, atan(GLASS) / ABBE_DEGREE);
+  double first[4], s[4];
+  pass(&j, natural, 0, first);
+  pass(&j, first, 0, s);
+  assert_near(s[0], 0.0109415, 5e-8);
+  pass(&j, first, 90, s);
+  assert_near(s[0], 0, 1e-15);
+}
+
+/* Plates one behind another, with all that goes to and fro between their faces. */
+TEST(piles_of_plates_at_the_angle_of_brewster) {
+  static const struct {
+    int plates;
+    double passed, degree;
+  } rows[] = {{1, 0.871134, 0.147929}, {4, 0.709302, 0.409836}, {10, 0.611801, 0.634518}};
+  const double outside = atan(GLASS) / ABBE_DEGREE, within = 90 - outside;
+  for (int i = 0; i < 3; i++) {
+    double t[2];
+    for (int p = 0; p < 2; p++) {
+      double all = 0;
+      t[p] = 1;
+      for (int k = 0; k < 2 * rows[i].plates; k++) {
+        const abbe_film_light l = k % 2 ? face(GLASS, 1, 0, within) : face(1, GLASS, 0, outside);
+        const double r = l.reflected[p], on = l.transmitted[p], between = 1 - all * r;
+        all = r + on * on * all / between;
+        t[p] *= on / between;
+      }
+      assert_near(all + t[p], 1, 1e-12);
+    }
+    assert_near((t[0] + t[1]) / 2, rows[i].passed, 5e-7);
+    assert_near((t[1] - t[0]) / (t[1] + t[0]), rows[i].degree, 5e-7);
+  }
 }
 
 TEST(the_mueller_matrix_of_reflection) {

@@ -121,6 +121,22 @@ TEST(wollastons_prism) {
   assert_true(found[0] * found[1] < 0);
 }
 
+/* The air gap of a Glan prism, its axis across the plane of incidence: which wave goes no further,
+ * from where. */
+TEST(critical_angles_of_a_glan_prism) {
+  const double wanted[2] = {37.08597, 42.29041}, below[3] = {0, 0, -1};
+  const abbe_uniaxial m = spar(0, 1, 0);
+  for (int wave = 0; wave < 2; wave++)
+    for (int side = -1; side <= 1; side += 2) {
+      const double angle = radians(wanted[wave] + 1e-5 * side), in[3] = {sin(angle), 0, cos(angle)};
+      abbe_uniaxial_split s;
+      abbe_uniaxial_meet(&m, &air, below, (abbe_uniaxial_mode)wave, in, &s);
+      const double passed = s.transmitted[0].share + s.transmitted[1].share;
+      assert_near(s.reflected[wave].share + passed, 1, 1e-12);
+      assert_true(side < 0 ? passed > 1e-4 : passed == 0);
+    }
+}
+
 /* A slab whose axis lies in its face, head on, with all that goes to and fro. */
 TEST(a_slab_of_calcite_head_on) {
   const double wanted[2] = {0.1155736, 0.0736532};
@@ -150,6 +166,54 @@ TEST(tourmalines_extraordinary_wave_loses_by_its_ray) {
   }
   assert_near(abbe_uniaxial_attenuation(o, e, 2000, 300, 1), 2000, 1e-12);
   assert_near(abbe_uniaxial_attenuation(o, e, 2000, 300, 0), 300, 1e-12);
+}
+
+/* What is left of unpolarised light that runs head on through two plates, in the waves of the
+ * second; of what faces reflect nothing counts. mm: the thickness of each. */
+static void two_plates(const abbe_uniaxial *first, const abbe_uniaxial *second, const double mm[2],
+                       double left[2]) {
+  const abbe_uniaxial *plates[2] = {first, second};
+  const double in[3] = {0, 0, -1};
+  double lost[2][2];
+  abbe_uniaxial_split s, t;
+  for (int plate = 0; plate < 2; plate++) {
+    const abbe_uniaxial *m = plates[plate];
+    abbe_uniaxial_meet_unpolarised(&air, m, up, in, &s);
+    for (int wave = 0; wave < 2; wave++) {
+      const double per_m = wave == 0
+                               ? 2000
+                               : abbe_uniaxial_attenuation(m->n_o, m->n_e, 2000, 300,
+                                                           dot(s.transmitted[E].ray, m->axis));
+      assert_near(s.transmitted[wave].ray[2], -1, 1e-15);
+      lost[plate][wave] = exp(-per_m * mm[plate] / 1000);
+    }
+  }
+  left[0] = left[1] = 0;
+  for (int from = 0; from < 2; from++) {
+    abbe_uniaxial_meet(first, second, up, (abbe_uniaxial_mode)from, in, &t);
+    const double passed = t.transmitted[0].share + t.transmitted[1].share;
+    assert_near(passed, 1, 1e-4);
+    for (int to = 0; to < 2; to++)
+      left[to] += 0.5 * lost[0][from] * t.transmitted[to].share / passed * lost[1][to];
+  }
+}
+
+TEST(plates_of_tourmaline_polarise) {
+  const abbe_uniaxial m = {1.644, 1.624, {1, 0, 0}}, crossed = {1.644, 1.624, {0, 1, 0}},
+                      upright = {1.644, 1.624, {0, 0, 1}};
+  double left[2];
+  two_plates(&m, &m, (const double[2]){1, 0}, left);
+  assert_near(2 * left[O], 0.135335, 5e-7);
+  assert_near(2 * left[E], 0.740818, 5e-7);
+  assert_near(left[O] + left[E], 0.438077, 5e-7);
+  assert_near((left[E] - left[O]) / (left[E] + left[O]), 0.691069, 5e-7);
+  two_plates(&m, &m, (const double[2]){1, 1}, left);
+  assert_near(left[O] + left[E], 0.283564, 5e-7);
+  two_plates(&m, &crossed, (const double[2]){1, 1}, left);
+  assert_near(left[O] + left[E], 0.100259, 5e-7);
+  /* along the axis both waves are ordinary: one exponential */
+  two_plates(&upright, &upright, (const double[2]){1, 0.5}, left);
+  assert_near(left[O] + left[E], exp(-3), 1e-15);
 }
 
 /* The complex tensor: the index of a wave along `normal` is complex, and what it loses a metre of
