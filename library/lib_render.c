@@ -77,8 +77,8 @@ abbe_result abbe_lib_scene_render(abbe_lib_scene *s, const char *const *settings
   if (result == ABBE_OK)
     result = abbe_renderer_frame(s->renderer, s->progress, s->user, NULL, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_read_blurred(s->renderer, s->now, &q.desc, q.desc.aovs, NULL, NULL,
-                                        &image, error);
+    result = abbe_renderer_read_blurred(s->renderer, s->now, &q.desc, q.desc.aovs, s->progress,
+                                        s->user, &image, error);
   if (result == ABBE_OK) result = abbe_image_set_attribute(&image, "abbe:scene", s->path, error);
   const bool printed = abbe_method_of(q.desc.profile)->printed;
   if (result == ABBE_OK)

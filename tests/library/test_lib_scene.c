@@ -136,6 +136,25 @@ TEST(progress_stops_the_work) {
   abbe_lib_picture_free(rendered(s));
 }
 
+static bool stop_at_a_third(void *user, double done) {
+  (void)user;
+  return fabs(done - 1.0 / 3) > 1e-9;
+}
+
+TEST(progress_stops_between_places_on_the_lens) {
+  static const char *const aperture[] = {"camera.aperture=16"};
+  static const char *const three[] = {"width=16", "height=16", "photons=16", "map_size=64",
+                                      "lens=3"};
+  HELD(abbe_lib_scene, s) = opened(aperture, 1);
+  HELD(abbe_lib_picture, p) = NULL;
+  abbe_lib_scene_set_progress(s, stop_at_a_third, NULL);
+  REFUSED(ABBE_CANCELLED, "1 of 3 places on the lens",
+          abbe_lib_scene_render(s, three, COUNT(three), &p, &error));
+  assert_null(p);
+  abbe_lib_scene_set_progress(s, NULL, NULL);
+  OK(abbe_lib_scene_render(s, three, COUNT(three), &p, &error));
+}
+
 TEST(what_fails_leaves_all_as_it_was) {
   HELD(abbe_lib_scene, s) = opened(NULL, 0);
   abbe_lib_scene *none = NULL;

@@ -356,6 +356,17 @@ static void note_layers(const abbe_scene *scene, abbe_plan *plan) {
                    keeper->name);
 }
 
+static void note_lost_glow(const abbe_scene *scene, abbe_plan *plan) {
+  for (size_t r = 0; r < plan->refractor_count && !plan->glowing; r++) {
+    const abbe_object *o = &scene->object[plan->refractor_object[r]];
+    if (!abbe_material_is_fluorescent(o->material)) continue;
+    abbe_plan_note(plan,
+                   "%s: drawn without its glow, which takes the default profile, no --model layers "
+                   "and at most %d refractors; 'abbe trace' has it",
+                   o->name, ABBE_PLAN_MOST_GLOWING);
+  }
+}
+
 void abbe_refractor_model_note(const abbe_scene *scene, abbe_plan *plan) {
   const abbe_object *first[2] = {NULL, NULL};
   size_t pairs = 0;
@@ -364,6 +375,7 @@ void abbe_refractor_model_note(const abbe_scene *scene, abbe_plan *plan) {
                    "light of lamps that comes to a rough mirror through glass or off a smooth "
                    "mirror is left out, on receivers and as the camera sees it");
   note_layers(scene, plan);
+  note_lost_glow(scene, plan);
   if (plan->multi_refractor_paths) return;
   if (plan->refractor_count > 1)
     abbe_plan_note(plan, "light that leaves one refractor and meets another goes on unrefracted");

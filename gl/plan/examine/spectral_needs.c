@@ -493,7 +493,7 @@ void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan) {
   note_polarisation(scene, plan);
   if (scene->camera.aperture > 0)
     abbe_plan_note(plan,
-                   "the camera has an aperture: a picture is the mean of %zu; 'abbe view' is sharp",
+                   "the camera has an aperture: a mean of %zu pictures from its pupil; 1 is sharp",
                    plan->desc.lens);
   if (plan->camera_sees_refractor && !shine_alike(scene, plan->desc.min_nm, plan->desc.max_nm))
     abbe_plan_note(plan, "through refractors, colours are split by the first light's illuminant");

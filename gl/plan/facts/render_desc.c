@@ -68,7 +68,7 @@ static void fill_in_defaults(size_t width, size_t height, abbe_render_desc *d) {
   const bool one = m->own_passes || d->upsample > 1;
   if (d->supersample == 0) d->supersample = one ? 1 : ABBE_PLAN_SAMPLES;
   if (d->adaptive == 0) d->adaptive = one ? 1 : ABBE_PLAN_ADAPTIVE;
-  if (d->lens == 0) d->lens = ABBE_PLAN_LENS;
+  if (d->lens == 0) d->lens = m->own_passes ? 1 : ABBE_PLAN_LENS;
   if (d->environment_lights == 0) d->environment_lights = ABBE_PLAN_ENVIRONMENT_LIGHTS;
   if (d->light_points == 0) d->light_points = ABBE_PLAN_LIGHT_POINTS;
   if (d->energy_share == 0) d->energy_share = ABBE_PLAN_SHARE;
@@ -342,7 +342,7 @@ const abbe_render_setting abbe_render_settings[] = {
      .what = "the adaptive sampling", .default_ = "4; thesis, and with --upsample, 1",
      .help = "N x N rays for a sample of a receiver where its light bends"},
     {COUNT(lens, 1, ABBE_RENDER_MAX_LENS), .option = "lens", .aside = true,
-     .what = "the number of places on the lens", .default_ = "32",
+     .what = "the number of places on the lens", .default_ = "32; published profiles 1",
      .help =
          "of a camera with an aperture, places on it that the picture is seen from; 1 is sharp"},
     {COUNT(receiver_samples, 1, 4), .option = "receiver-samples", .aside = true,

@@ -34,6 +34,22 @@ TEST(fluorescence_is_noted) {
                        "diamond-fluorescent: fluorescent; of photons that excite it 30 % come "
                        "back at 415.2 to 550 nm, 100 % of these within the range"));
   assert_true(plan.glowing && abbe_plan_runs(&plan, ABBE_PASS_EYE_GLOW, 0));
+  assert_false(is_noted(&plan, "glow"));
+  abbe_plan_free(&plan);
+  const abbe_render_desc layers = {.model = ABBE_MODEL_LAYERS};
+  plan_text(printed("%s%s", head, BALL("diamond-fluorescent")), &layers, &plan);
+  assert_true(!plan.glowing && is_noted(&plan, "ball: drawn without its glow"));
+}
+
+TEST(an_aperture_is_noted) {
+  const char *head = "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05], aperture: 2, focus: 1}\n";
+  const abbe_render_desc thesis = {.profile = ABBE_PROFILE_THESIS};
+  FILLED(abbe_plan, plan,
+         plan_text(printed("%s%s", head, POINT_LIGHT FLOOR BALL("n-bk7")), NULL, &plan));
+  assert_true(is_noted(&plan, "a mean of 32 pictures from its pupil"));
+  abbe_plan_free(&plan);
+  plan_text(printed("%s%s", head, POINT_LIGHT FLOOR BALL("n-bk7")), &thesis, &plan);
+  assert_true(is_noted(&plan, "a mean of 1 pictures"));
 }
 
 /* What a film reflects, from both sides, beside the bare face. */
