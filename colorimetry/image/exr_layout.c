@@ -91,8 +91,26 @@ static abbe_result check_codec(const abbe_exr_stream *s, int number, abbe_error 
       patch);
 }
 
+/* What the file is by its first bytes; NULL where they are none of these. */
+static const char *other_kind(const abbe_exr_stream *s) {
+  static const struct {
+    const char *first, *name;
+  } kinds[] = {{"PF", "a PFM"},      {"Pf", "a PFM"},        {"P5", "a PGM"},   {"P6", "a PPM"},
+               {"\x89PNG", "a PNG"}, {"\xff\xd8", "a JPEG"}, {"II*", "a TIFF"}, {"MM", "a TIFF"},
+               {"SDPX", "a DPX"},    {"XPDS", "a DPX"},      {"GIF8", "a GIF"}, {"RIFF", "a WebP"},
+               {"#?", "a Radiance"}};
+  char head[4] = {0};
+  if (pread(s->fd, head, sizeof head, 0) != sizeof head) return NULL;
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+    if (memcmp(head, kinds[i].first, strlen(kinds[i].first)) == 0) return kinds[i].name;
+  return NULL;
+}
+
 abbe_result abbe_exr_fail_open(const abbe_exr_stream *s, exr_result_t rv, abbe_error *error) {
   int number = 0;
+  const char *other = s->io_errno == 0 ? other_kind(s) : NULL;
+  if (other != NULL)
+    return abbe_error_set(error, ABBE_PARSE, "%s: it is %s file and not OpenEXR", s->path, other);
   for (int part = 0; s->io_errno == 0 && number >= 0; part++) {
     number = find_codec(s, part);
     ABBE_TRY(check_codec(s, number, error));
@@ -294,6 +312,7 @@ static abbe_result name_band(const exr_attribute_t *a, const abbe_exr_stream *s,
 abbe_result abbe_exr_attributes_read(exr_context_t context, int part, const abbe_exr_stream *s,
                                      abbe_image *image, double *unit, abbe_error *error) {
   int32_t count = 0;
+  bool aces = false;
   if (exr_get_attribute_count(context, part, &count) != 0) return ABBE_OK;
   for (int32_t i = 0; i < count; i++) {
     const exr_attribute_t *a = NULL;
@@ -304,6 +323,7 @@ abbe_result abbe_exr_attributes_read(exr_context_t context, int part, const abbe
                             c->blue_x, c->blue_y, c->white_x, c->white_y};
       memcpy(image->xy, xy, sizeof xy);
     }
+    if (a->type == EXR_ATTR_INT && strcmp(a->name, "acesImageContainerFlag") == 0) aces = a->i == 1;
     ABBE_TRY(name_band(a, s, image, error));
     if (a->type != EXR_ATTR_STRING || a->name[0] == '\0' || a->string->str == NULL) continue;
     if (strcmp(a->name, ABBE_EXR_STORAGE_NAME) == 0) continue;
@@ -319,5 +339,8 @@ abbe_result abbe_exr_attributes_read(exr_context_t context, int part, const abbe
                             s->path, ABBE_IMAGE_MAX_ATTRIBUTES);
     ABBE_TRY(abbe_image_set_attribute(image, a->name, a->string->str, error));
   }
-  return ABBE_OK;
+  if (!aces) return ABBE_OK;
+  /* An ACES container has AP0, whatever else the file says [ColorInterop2026]. */
+  memset(image->xy, 0, sizeof image->xy);
+  return abbe_image_set_attribute(image, "colorInteropID", "lin_ap0_scene", error);
 }

@@ -128,15 +128,19 @@ static double parse_place(const char *text) {
   return hertz ? light_nm_s / (value * pow(10, exponent)) : value * pow(10, exponent + 9);
 }
 
+/* Behind the "T." of what reflects, which drafts of the layout call "M00."; NULL: it is none. */
+static const char *behind_reflective(const char *name) {
+  const size_t length = strncmp(name, "M00.", 4) == 0 ? 4 : strncmp(name, "T.", 2) == 0 ? 2 : 0;
+  return length > 0 ? name + length : NULL;
+}
+
 abbe_spectral_kind abbe_spectral_channel_parse(const char *name, double *lambda_nm) {
-  abbe_spectral_kind kind = ABBE_SPECTRAL_NONE;
-  if (strncmp(name, "S0.", 3) == 0) kind = ABBE_SPECTRAL_EMISSIVE;
-  if (strncmp(name, "T.", 2) == 0) kind = ABBE_SPECTRAL_REFLECTIVE;
-  if (kind == ABBE_SPECTRAL_NONE) return kind;
-  const double nm = parse_place(name + (kind == ABBE_SPECTRAL_EMISSIVE ? 3 : 2));
+  const bool emissive = strncmp(name, "S0.", 3) == 0;
+  const char *place = emissive ? name + 3 : behind_reflective(name);
+  const double nm = place != NULL ? parse_place(place) : 0;
   if (!(nm > 0 && isfinite(nm))) return ABBE_SPECTRAL_NONE;
   *lambda_nm = nm;
-  return kind;
+  return emissive ? ABBE_SPECTRAL_EMISSIVE : ABBE_SPECTRAL_REFLECTIVE;
 }
 
 typedef struct sample {
@@ -170,10 +174,10 @@ static size_t collect(const abbe_image *image, const char *layer, abbe_spectral_
 
 /* "T.400nm.500nm": from and to, nm. */
 static bool parse_reradiation(const char *name, double nm[2]) {
-  const char *second = strncmp(name, "T.", 2) == 0 ? strchr(name + 2, '.') : NULL;
+  const char *from = behind_reflective(name), *second = from != NULL ? strchr(from, '.') : NULL;
   char first[64];
-  if (second == NULL || (size_t)(second - name - 2) >= sizeof first) return false;
-  snprintf(first, sizeof first, "%.*s", (int)(second - name - 2), name + 2);
+  if (second == NULL || (size_t)(second - from) >= sizeof first) return false;
+  snprintf(first, sizeof first, "%.*s", (int)(second - from), from);
   nm[0] = parse_place(first);
   nm[1] = parse_place(second + 1);
   return nm[0] > 0 && nm[1] > 0 && isfinite(nm[0]) && isfinite(nm[1]);

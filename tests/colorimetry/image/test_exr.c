@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
+#include "colorimetry/image/picture_space.h"
 #include "colorimetry/rgb_space.h"
 
 #include <openexr.h>
@@ -302,6 +303,14 @@ TEST(not_pictures) {
   REFUSED(ABBE_IO, "", abbe_exr_read("/tmp", &image, &error));
   REFUSED(ABBE_IO, "", abbe_exr_read("/dev/null", &image, &error));
   read_must_fail("not an OpenEXR file at all, but long enough to be one", 53, "text");
+  static const char *const others[][2] = {{"PF\n1 1\n-1.0\n0123456789ab", "a PFM"},
+                                          {"\x89PNG\r\n\x1a\n", "a PNG"},
+                                          {"MM\\0*12345678", "a TIFF"}};
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+    OK(abbe_file_write(path, others[i][0], strlen(others[i][0]), &error));
+    REFUSED(ABBE_PARSE, printed("it is %s file and not OpenEXR", others[i][1]),
+            abbe_exr_read(path, &image, &error));
+  }
 }
 
 /* A file of the C core's making, of one pixel of one channel; its header is not yet written. */
@@ -315,6 +324,29 @@ static exr_context_t begin_pixel(exr_storage_t storage, const char *channel) {
   assert_int_equal(exr_add_channel(f, 0, channel, EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LINEAR, 1, 1),
                    0);
   return f;
+}
+
+/* Whatever the file says beside. Y of red is AP0's in the published matrix to XYZ of D65. */
+TEST(an_aces_container_is_of_ap0) {
+  const exr_attr_chromaticities_t rec709 = {0.64F, 0.33F, 0.3F,    0.6F,
+                                            0.15F, 0.06F, 0.3127F, 0.329F};
+  for (int i = 0; i < 8; i++) {
+    exr_context_t f = begin_pixel(EXR_STORAGE_SCANLINE, "R");
+    const bool flag = (i & 1) != 0, primaries = (i & 2) != 0, id = (i & 4) != 0;
+    if (primaries)
+      assert_int_equal(exr_attr_set_chromaticities(f, 0, "chromaticities", &rec709), 0);
+    if (id) assert_int_equal(exr_attr_set_string(f, 0, "colorInteropID", "lin_rec709_scene"), 0);
+    assert_int_equal(exr_attr_set_int(f, 0, "acesImageContainerFlag", flag), 0);
+    assert_int_equal(exr_write_header(f), 0);
+    const float red = 1;
+    assert_int_equal(exr_write_scanline_chunk(f, 0, 0, &red, 4), 0);
+    assert_int_equal(exr_finish(&f), 0);
+    MADE(abbe_image, image, abbe_exr_read(path, &image, &error));
+    abbe_picture_space space;
+    OK(abbe_picture_space_find(&image, false, path, &space, &error));
+    assert_int_equal(space.assumed, !flag && !primaries && !id);
+    assert_near(space.to_xyz[3], flag ? 0.337369 : 0.212639, 1e-6);
+  }
 }
 
 /* One more than can be read. */

@@ -98,6 +98,10 @@ TEST(a_file_says_what_it_is_for) {
     assert_non_null(strstr(text, "ACEScg"));
     assert_non_null(strstr(text, "sRGB / Plain"));
     assert_non_null(strstr(text, "-3 to 2 stops from 0.18"));
+    /* Resolve's ranges of the shaper, up to 0.18 * 2^2, and of the table; the version of CLF. */
+    if (e == 0) assert_non_null(strstr(text, "\nLUT_1D_INPUT_RANGE 0 0.72\n"));
+    if (e == 0) assert_non_null(strstr(text, "\nLUT_3D_INPUT_RANGE 0 1\n"));
+    if (e == 1) assert_non_null(strstr(text, " compCLFversion=\"3.0\""));
     unlink(path_of(endings[e]));
   }
   abbe_display_free(display);

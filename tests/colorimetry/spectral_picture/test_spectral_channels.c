@@ -15,6 +15,8 @@ TEST(names) {
                {"S0.550nm", ABBE_SPECTRAL_EMISSIVE, 550},
                {"T.380,5nm", ABBE_SPECTRAL_REFLECTIVE, 380.5},
                {"T.0,55um", ABBE_SPECTRAL_REFLECTIVE, 550},
+               {"M00.400,000000nm", ABBE_SPECTRAL_REFLECTIVE, 400},
+               {"M01.400nm", ABBE_SPECTRAL_NONE, 0},
                {"S0.5,5E-7m", ABBE_SPECTRAL_EMISSIVE, 550},
                {"S0.5,45E14Hz", ABBE_SPECTRAL_EMISSIVE, 550.0779},
                {"S0.545THz", ABBE_SPECTRAL_EMISSIVE, 550.0779},
@@ -222,7 +224,7 @@ TEST(re_radiation) {
   const double mean = abbe_observer_integral_power(&d65, 400, 410) / 10;
   assert_near(weight[BANDS][1], even * even_white / 100 * mean / white[1], 1e-12);
   abbe_image_free(&image);
-  snprintf(name[BANDS + 1], sizeof *name, "T.0,405um.605nm");
+  snprintf(name[BANDS + 1], sizeof *name, "M00.0,405um.605nm");
   OK(abbe_image_make(1, 1, BANDS + 2, names, &image, &error));
   abbe_spectral_channels twice;
   REFUSED(ABBE_INVALID_ARGUMENT, "are of one pair of wavelengths",
