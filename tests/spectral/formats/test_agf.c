@@ -56,6 +56,29 @@ TEST(a_glass_is_read_whole) {
   assert_int_equal(report.count, 0);
 }
 
+/* LightPath's record. With lambda_tk squared g gains 140.7e-6 from 20 to 40 C in vacuum, with its
+ * sign kept 111.0e-6. (With the index against air in the model's factor it is 140.68e-6; with that
+ * in vacuum, which N-BK7's table has in all digits, 140.75e-6.) */
+TEST(a_negative_resonance_is_kept_and_not_guessed_at) {
+  OWNED(abbe_material_table, t) =
+      parse("NM D-ZLAF52LA_M 1 810410 1.805881 40.888056 0 0 0\n"
+            "CD 3.171708100E+000 -1.370844800E-002 2.962902600E-002 1.115009500E-003 "
+            "-5.557660600E-005 5.694112200E-006\n"
+            "TD 5.350000000E-006 1.852600000E-008 -7.872000000E-011 7.151500000E-007 "
+            "1.264800000E-010 -2.313800000E-001 2.000000000E+001\n"
+            "LD 3.60000000E-001 1.55000000E+000\n");
+  const abbe_conditions warm = {40, 0};
+  abbe_material m = t.material[0];
+  double n[2];
+  assert_near(m.catalogue.thermal[5], -0.23138, 0);
+  REFUSED(ABBE_UNSUPPORTED, "lambda_tk is negative", abbe_material_place(&m, &warm, &error));
+  m.catalogue.thermal[5] = 0.23138;
+  OK(abbe_material_n_absolute(&m, 435.8343, &n[0], &error));
+  OK(abbe_material_place(&m, &warm, &error));
+  OK(abbe_material_n_absolute(&m, 435.8343, &n[1], &error));
+  assert_near(1e6 * (n[1] - n[0]), 140.75, 0.01);
+}
+
 TEST(commas_part_numbers_or_begin_their_decimals) {
   OWNED(abbe_material_table, t) =
       parse("NM A 2 517642 1,5168 64,17\nCD 1,03961212E+00 6,00069867E-03 2,31792344e-1 "
