@@ -17,7 +17,7 @@ enum { CELLS = ABBE_PLAN_GLOW_CELLS, ALL_CELLS = CELLS * CELLS * CELLS };
 /* In place of a unit. */
 enum { ASKS = -1 };
 /* Places of a cell, a side, that are asked whether they are inside. */
-enum { PLACES = 4 };
+enum { PLACES = 4, SIDE = CELLS * PLACES };
 
 typedef struct ray {
   float from[4], along[4]; /* glow_rays.glsl */
@@ -246,37 +246,88 @@ static abbe_result follow(asked *a, size_t rays, double unit, abbe_error *error)
   return abbe_gl_check(gpu->gl, "the rays of what glows", error);
 }
 
-/* Share of a cell that is inside the object. */
-static double share_inside(const asked *a, const double low[3], const double cell[3]) {
-  size_t inside = 0;
-  for (int k = 0; k < PLACES * PLACES * PLACES; k++) {
-    const int at[3] = {k % PLACES, k / PLACES % PLACES, k / PLACES / PLACES};
-    double p[3];
-    for (int c = 0; c < 3; c++) p[c] = low[c] + cell[c] * (at[c] + 0.5) / PLACES;
-    inside += abbe_object_contains(a->object, p);
+/* A place of the object's grid along an axis, m; aside, so that it lies on no edge by symmetry. */
+static double place_at(const abbe_object *o, int axis, int i) {
+  static const double within[3] = {0.5003, 0.5007, 0.5};
+  return o->min[axis] + (o->max[axis] - o->min[axis]) * (i + within[axis]) / SIDE;
+}
+
+/* All places above where a line along z meets the face are on its other side. */
+static void cross_face(const abbe_object *o, const uint32_t *face, bool *inside) {
+  const double *p[3] = {o->mesh.position[face[0]], o->mesh.position[face[1]],
+                        o->mesh.position[face[2]]};
+  const double area =
+      (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
+  int from[2], to[2];
+  for (int c = 0; c < 2; c++) {
+    const double step = (o->max[c] - o->min[c]) / SIDE;
+    const double low = fmin(fmin(p[0][c], p[1][c]), p[2][c]) - o->min[c];
+    const double high = fmax(fmax(p[0][c], p[1][c]), p[2][c]) - o->min[c];
+    from[c] = (int)fmax(floor(low / step) - 1, 0);
+    to[c] = (int)fmin(floor(high / step) + 1, SIDE - 1);
   }
-  return (double)inside / (PLACES * PLACES * PLACES);
+  for (int y = from[1]; y <= to[1] && area != 0; y++)
+    for (int x = from[0]; x <= to[0]; x++) {
+      const double at[2] = {place_at(o, 0, x), place_at(o, 1, y)};
+      double z = 0;
+      bool meets = true;
+      for (int i = 0; i < 3; i++) {
+        const double *b = p[(i + 1) % 3], *c = p[(i + 2) % 3];
+        const double share =
+            ((b[0] - at[0]) * (c[1] - at[1]) - (b[1] - at[1]) * (c[0] - at[0])) / area;
+        meets = meets && share >= 0;
+        z += share * p[i][2];
+      }
+      for (int k = SIDE - 1; meets && k >= 0 && place_at(o, 2, k) > z; k--)
+        inside[(k * SIDE + y) * SIDE + x] ^= true;
+    }
+}
+
+/* Which places of the grid are inside the object: [z][y][x], SIDE each. */
+static void find_inside(const abbe_object *o, bool *inside) {
+  if (o->exact.kind != ABBE_EXACT_SPHERE && o->exact.kind != ABBE_EXACT_CONVEX) {
+    for (size_t f = 0; f < o->mesh.face_count; f++) cross_face(o, o->mesh.face[f], inside);
+    return;
+  }
+  for (int i = 0; i < SIDE * SIDE * SIDE; i++) {
+    const int at[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
+    double p[3];
+    for (int c = 0; c < 3; c++) p[c] = place_at(o, c, at[c]);
+    inside[i] = abbe_object_contains(o, p);
+  }
+}
+
+/* Share of a cell that is inside the object. */
+static float share_inside(const bool *inside, const size_t at[3]) {
+  size_t count = 0;
+  for (size_t k = 0; k < PLACES * PLACES * PLACES; k++) {
+    const size_t x = PLACES * at[0] + k % PLACES, y = PLACES * at[1] + k / PLACES % PLACES;
+    count += inside[((PLACES * at[2] + k / PLACES / PLACES) * SIDE + y) * SIDE + x];
+  }
+  return (float)count / (PLACES * PLACES * PLACES);
 }
 
 /* The source in each cell, of what the sums hold. */
-static void fill_cells(const asked *a, double unit) {
+static abbe_result fill_cells(const asked *a, double unit, abbe_error *error) {
   const abbe_gl *gl = scene_of(a->pass)->gpu->gl;
   const double yield = a->object->material->fluorescence.yield;
   GLuint sum[ALL_CELLS][2];
   float(*out)[4] = calloc(ALL_CELLS, sizeof *out);
-  double cell[3], low[3], volume = 1;
-  if (out == NULL) return;
-  for (int c = 0; c < 3; c++) {
-    cell[c] = (a->object->max[c] - a->object->min[c]) / CELLS;
-    volume *= cell[c];
+  bool *inside = calloc((size_t)SIDE * SIDE * SIDE, sizeof *inside);
+  double volume = 1;
+  if (out == NULL || inside == NULL) {
+    free(out);
+    free(inside);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for glow");
   }
+  find_inside(a->object, inside);
+  for (int c = 0; c < 3; c++) volume *= (a->object->max[c] - a->object->min[c]) / CELLS;
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, a->pass->sums);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof sum, sum);
   for (size_t i = 0; i < ALL_CELLS; i++) {
     const size_t at[3] = {i % CELLS, i / CELLS % CELLS, i / CELLS / CELLS};
-    for (int c = 0; c < 3; c++) low[c] = a->object->min[c] + cell[c] * (double)at[c];
     const double photons = ((double)sum[i][1] * 0x1p32 + (double)sum[i][0]) / unit;
-    out[i][1] = (float)share_inside(a, low, cell);
+    out[i][1] = share_inside(inside, at);
     if (out[i][1] > 0) out[i][0] = (float)(yield * photons / (4 * ABBE_PI * volume));
   }
   abbe_gpu_bind_array(scene_of(a->pass)->gpu, a->pass->program, "glow_cells", UNIT_GLOW,
@@ -285,6 +336,8 @@ static void fill_cells(const asked *a, double unit) {
   gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, (GLint)(CELLS * a->refractor), CELLS, CELLS,
                     CELLS, GL_RGBA, GL_FLOAT, out);
   free(out);
+  free(inside);
+  return ABBE_OK;
 }
 
 /* What it sends back along rays from all around that meet it, in the mean, and how many of them do:
@@ -322,7 +375,7 @@ static abbe_result light_up(asked *a, abbe_error *error) {
   const double unit = 0x1p31 / most; /* that of a ray fits in a word */
   abbe_gpu_clear_buffer(scene_of(pass)->gpu, pass->sums);
   ABBE_TRY(follow(a, a->rays, unit, error));
-  fill_cells(a, unit);
+  ABBE_TRY(fill_cells(a, unit, error));
   pass->low[a->refractor][3] = 1;
   ABBE_TRY(follow(a, RAYS, 0, error));
   shine(a);
