@@ -107,6 +107,8 @@ foreach(scene sphere ring gem bunny glass prism rainbow metal-ring metals octahe
   add_test(NAME reference_${scene}
     COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR} ${scene})
   abbe_label(program NAMES reference_${scene})
+  # Their shaders are compiled as users have them, with all of LLVM's passes (script/test).
+  set_tests_properties(reference_${scene} PROPERTIES ENVIRONMENT_MODIFICATION GALLIVM_PERF=unset:)
 endforeach()
 # Tolerances that catch nothing are none.
 add_test(NAME reference_broken_exits
