@@ -99,7 +99,8 @@ enum {
 static const struct argp_option screen_options_options[] = {
     {"ocio", OPTION_OCIO, "FILE", ABBE_ARGUMENT_READS,
      "the configuration; without it, $OCIO, else the shipped one", 0},
-    {"display", OPTION_DISPLAY, "NAME", 0, "the screen; without it, the configuration's first", 0},
+    {"display", OPTION_DISPLAY, "NAME", 0,
+     "the screen, or its ICC profile (.icc or .icm); without it, the configuration's first", 0},
     {"view", OPTION_VIEW, "NAME", 0, "how to show it; without it, the display's first", 0},
     {"exposure", OPTION_EXPOSURE, "STOPS|auto", 0,
      "brighten (or darken) before the view; auto: so that a tenth of the picture is brighter than "

@@ -8,10 +8,10 @@
 #include <OpenColorIO/OpenColorIO.h>
 
 #include <cmath>
-#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <new>
 #include <sstream>
 #include <string>
@@ -269,21 +269,15 @@ void append_display(const OCIO::GroupTransformRcPtr &group, const char *source, 
 OCIO::ConstProcessorRcPtr encoding_to_xyz(const OCIO::ConstConfigRcPtr &config,
                                           const OCIO::ConstColorSpaceRcPtr &space) {
   OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
-  OCIO::ColorSpaceTransformRcPtr decode = OCIO::ColorSpaceTransform::Create();
   const bool display = space->getReferenceSpaceType() == OCIO::REFERENCE_SPACE_DISPLAY;
-  decode->setSrc(space->getName());
-  decode->setDst(display ? "cie_xyz_d65_interchange" : "aces_interchange");
-  group->appendTransform(decode);
+  group->appendTransform(
+      space_transform(space->getName(), display ? "cie_xyz_d65_interchange" : "aces_interchange"));
   if (!display) {
     OCIO::BuiltinTransformRcPtr to_xyz = OCIO::BuiltinTransform::Create();
     to_xyz->setStyle("UTILITY - ACES-AP0_to_CIE-XYZ-D65_BFD");
     group->appendTransform(to_xyz);
   }
   return config->getProcessor(group);
-}
-
-bool named(const std::string &display, const char *name) {
-  return display == name || display == std::string(name) + " - Display";
 }
 
 /* What the display's numbers mean; nothing where the configuration does not state it. */
@@ -302,8 +296,9 @@ void find_encoding(const OCIO::ConstConfigRcPtr &config, const std::string &disp
     if (abbe_rgb_encoding_of_hdr_probes(probes, out->xy, &out->transfer)) return;
   } catch (const OCIO::Exception &) { /* no such role, or a transform in one direction only */
   }
-  if (named(display, "sRGB")) abbe_rgb_encoding_srgb(out->xy, out->curve);
-  if (named(display, "Display P3")) abbe_rgb_encoding_display_p3(out->xy, out->curve);
+  const std::string plain = display.substr(0, display.find(" - Display"));
+  if (plain == "sRGB") abbe_rgb_encoding_srgb(out->xy, out->curve);
+  if (plain == "Display P3") abbe_rgb_encoding_display_p3(out->xy, out->curve);
 }
 
 /* White and gamut are matters of XYZ, between the picture's space and the view. */
@@ -374,11 +369,20 @@ abbe_result find_source(const OCIO::ConstConfigRcPtr &config, const abbe_display
                  error);
 }
 
+/* An ICC profile becomes a display as OpenColorIO has it, with the configuration's views for it. */
+OCIO::ConstConfigRcPtr with_profile(const OCIO::ConstConfigRcPtr &config, std::string *display) {
+  const std::filesystem::path path = std::filesystem::current_path() / *display;
+  if (path.extension() != ".icc" && path.extension() != ".icm") return config;
+  OCIO::ConfigRcPtr made = config->createEditableCopy();
+  *display = made->getDisplay(made->instantiateDisplayFromICCProfile(path.c_str()));
+  return made;
+}
+
 abbe_result make(const abbe_display_desc *desc, abbe_display **out, abbe_error *error) {
   const char *name = config_name(desc->config);
   OCIO::ConstConfigRcPtr config = load(desc->config);
-  const std::string display =
-      desc->display != nullptr ? desc->display : config->getDefaultDisplay();
+  std::string display = desc->display != nullptr ? desc->display : config->getDefaultDisplay();
+  config = with_profile(config, &display);
   const auto display_name = [&](int i) { return config->getDisplay(i); };
   if (!has(display.c_str(), config->getNumDisplays(), display_name))
     return unknown(name, "display", display.c_str(), listed(config->getNumDisplays(), display_name),

@@ -26,7 +26,8 @@ typedef struct abbe_display_desc {
   const char *config;        /* path of a configuration; NULL: $OCIO, else the shipped one */
   const char *source_space;  /* colour space of the pictures: one of the configuration, or what
                                 abbe_rgb_space_ocio_name calls it; NULL: role scene_linear */
-  const char *display;       /* NULL: the default */
+  const char *display;       /* or an ICC profile (.icc, .icm) of a matrix and curves, which gets
+                                the views of the configuration's virtual display; NULL: the default */
   const char *view;          /* NULL: the display's default view */
   double exposure;           /* stops */
   double white[2];           /* x, y of what shall look white, by Bradford; 0: D65 */

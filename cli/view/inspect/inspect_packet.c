@@ -171,8 +171,11 @@ static size_t find_channel(const abbe_inspect_picture *p, const char *name) {
 static abbe_result update(abbe_inspect *s, const packet *p, abbe_error *error) {
   const size_t at = find(s, p->name);
   abbe_inspect_picture *to = &s->picture[at];
+  bool whole;
   if (at == s->count)
     return abbe_error_set(error, ABBE_NOT_FOUND, "%s: no picture of this name is there", p->name);
+  /* Lines that are read later would lie over what is sent now. */
+  ABBE_TRY(abbe_inspect_read_on(s, INFINITY, &whole, error));
   const int64_t x1 = (int64_t)p->x + p->width, y1 = (int64_t)p->y + p->height;
   if (to->coarse > 0 || p->x < 0 || p->y < 0 || x1 > (int64_t)to->width || y1 > (int64_t)to->height)
     return abbe_error_set(

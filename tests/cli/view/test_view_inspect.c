@@ -395,6 +395,25 @@ TEST(lines_of_a_large_picture_are_read_one_after_another) {
   assert_memory_not_equal(out[0], out[2], sizeof out[0]);
 }
 
+/* What is sent into a file whose lines are still being read is not read over. */
+TEST(what_is_sent_stays) {
+  OWNED(abbe_inspect, s) = {.count = 0};
+  size_t focus;
+  bool whole = false;
+  unsigned char packet[400] = {[4] = 3}; /* one pixel of Z at 1, 150 becomes 1 */
+  const size_t length = strlen(path), size = length + 29;
+  static const char rest[] = "Z\0\1\0\0\0\226\0\0\0\1\0\0\0\1\0\0\0\0\0\200\77";
+  assert_true(size < 256);
+  packet[0] = (unsigned char)size;
+  memcpy(packet + 6, path, length);
+  memcpy(packet + 7 + length, rest, sizeof rest - 1);
+  open_large(&s, 2 * LARGE_W * LARGE_H / 4, false);
+  assert_non_null(s.picture[0].reader);
+  OK(abbe_inspect_take_packet(&s, packet, size, &focus, &error));
+  while (!whole) OK(abbe_inspect_read_on(&s, 0.01, &whole, &error));
+  assert_near(s.picture[0].image.data[2 * (150 * LARGE_W + 1) + 1], 1, 0);
+}
+
 /* All tiles of the finest level, which come first, are made unreadable. */
 TEST(a_large_picture_is_opened_without_its_finest_tiles) {
   OWNED(abbe_inspect, s) = {.count = 0};

@@ -5,6 +5,7 @@
 #include "colorimetry/observer.h"
 #include "colorimetry/rgb_space.h"
 
+#include <lcms2.h>
 #include <unistd.h>
 
 static const char *const names[] = {"R", "G", "B", "caustic.R", "A"};
@@ -389,4 +390,33 @@ TEST(what_other_configurations_tell) {
     }
   }
   unlink(path);
+}
+
+/* A profile of Adobe RGB (1998) by Little CMS: its primaries, D65 and the power 563/256. */
+TEST(a_monitors_profile_is_a_display) {
+  const char *path = printed("/tmp/abbe_test_monitor_%ld.icc", (long)getpid());
+  const double xy[8] = {0.64, 0.33, 0.21, 0.71, 0.15, 0.06, 0.3127, 0.329}, power = 563.0 / 256;
+  const cmsCIExyYTRIPLE primaries = {{xy[0], xy[1], 1}, {xy[2], xy[3], 1}, {xy[4], xy[5], 1}};
+  cmsToneCurve *tone = cmsBuildGamma(NULL, power), *const tones[3] = {tone, tone, tone};
+  cmsHPROFILE profile = cmsCreateRGBProfile(&(cmsCIExyY){xy[6], xy[7], 1}, &primaries, tones);
+  assert_true(cmsSaveProfileToFile(profile, path));
+  cmsCloseProfile(profile);
+  cmsFreeToneCurve(tone);
+  HELD(abbe_display, display) = make(&(abbe_display_desc){
+      .display = path, .view = "Plain", .source_space = "Linear Rec.709 (sRGB)"});
+  /* Rec.709's red is 0.71512 of Adobe's red alone, for they share it; white and grey stay */
+  static const float light[3][3] = {{1, 0, 0}, {1, 1, 1}, {0.18F, 0.18F, 0.18F}};
+  const double linear[3][3] = {{0.715119, 0, 0}, {1, 1, 1}, {0.18, 0.18, 0.18}};
+  MADE(abbe_image, image, abbe_image_make(3, 1, 3, names, &image, &error));
+  memcpy(image.data, light, sizeof light);
+  OK(abbe_display_apply(display, &image, &error));
+  for (int i = 0; i < 9; i++)
+    assert_near(pow((double)image.data[i], power), linear[i / 3][i % 3], 1e-4);
+  for (int i = 0; i < 8; i++) assert_near(image.xy[i], xy[i], 1e-3);
+  must_fail(&(abbe_display_desc){.display = path, .view = "Plane"}, ABBE_COLOUR,
+            "Looking, Plain, Raw");
+  OK(abbe_file_write(path, "none", 4, &error));
+  must_fail(&(abbe_display_desc){.display = path}, ABBE_COLOUR, path);
+  unlink(path);
+  must_fail(&(abbe_display_desc){.display = path}, ABBE_COLOUR, path);
 }
