@@ -119,16 +119,66 @@ static abbe_result add_pile(abbe_known_run *run, int plates, int sheet, abbe_err
   return add(run, what, exact, ABBE_LINE_D_NM, "Y", text, error);
 }
 
+/* ---- tourmaline ---- */
+
+#define STONE "tourmaline-green"
+#define STONE_NM 640.0
+#define STONE_THICK 0.003
+#define MIRROR 0.02 /* m, near a plate, whose thickness a ray meets in single precision */
+
+/* Shares of its two waves, ordinary first, that a plate reflects and passes head on, its axis in
+ * its face. */
+static abbe_result plate_of(const abbe_material *stone, double r[2], double t[2],
+                            abbe_error *error) {
+  for (int wave = 0; wave < 2; wave++) {
+    double n;
+    ABBE_TRY(abbe_material_n_along(stone, 2 * wave, STONE_NM, &n, error));
+    const double face = pow((n - 1) / (n + 1), 2);
+    const double per_m = abbe_material_attenuation_along(stone, 2 * wave, STONE_NM);
+    abbe_closed_form_slab(face, exp(-per_m * STONE_THICK), &r[wave], &t[wave]);
+  }
+  return ABBE_OK;
+}
+
+/* Two plates, axes in their faces, straight on; nothing turns o into e. */
+static abbe_result add_tourmaline(abbe_known_run *run, bool crossed, abbe_error *error) {
+  char text[1024];
+  abbe_number_format(
+      text, sizeof text,
+      "camera: {eye: [0, 0, -20], target: [0, 0, 0], up: [0, 1, 0], fov: 0.1}\n" PANEL
+      "- {name: a, shape: box, size: [1, 1, %g], material: " STONE ", axis: [1, 0, 0]}\n"
+      "- {name: b, shape: box, size: [1, 1, %g], material: " STONE ", axis: [%s],\n"
+      "   transform: [{translate: [0, 0, 0.1]}]}\n",
+      STONE_THICK, STONE_THICK, crossed ? "0, 1, 0" : "1, 0, 0");
+  abbe_scene scene = {0};
+  double r[2], t[2];
+  abbe_result result = abbe_known_scene(&scene, error, "%s", text);
+  if (result == ABBE_OK) result = plate_of(scene.object[1].material, r, t, error);
+  abbe_scene_free(&scene);
+  if (result != ABBE_OK) return result;
+  double exact = 0;
+  for (int wave = 0; wave < 2; wave++) {
+    const int other = crossed ? 1 - wave : wave;
+    exact += t[wave] * t[other] / (1 - r[wave] * r[other]) / 2;
+  }
+  return add(run,
+             crossed ? "two plates of " STONE ", crossed" : "two plates of " STONE ", parallel",
+             exact, STONE_NM, "Y", text, error);
+}
+
 /* ---- two metal mirrors ---- */
 
-static int put_mirror(char *out, size_t size, int number, const double at[3], const double n[3]) {
+/* at: in widths. */
+static int put_mirror(char *out, size_t size, int number, double wide, const double at[3],
+                      const double n[3]) {
   return abbe_number_format(
       out, size,
-      "- {name: mirror%d, shape: rectangle, width: 1, height: 1, mirror: " METAL ",\n"
+      "- {name: mirror%d, shape: rectangle, width: %g, height: %g, mirror: " METAL ",\n"
       "   transform: [{rotate: {axis: [%.17g, %.17g, 0], angle: %.17g}}, {translate: [%.17g, "
       "%.17g, "
       "%.17g]}]}\n",
-      number, -n[1], n[0], acos(n[2]) * ABBE_KNOWN_DEGREES, at[0], at[1], at[2]);
+      number, wide, wide, -n[1], n[0], acos(n[2]) * ABBE_KNOWN_DEGREES, wide * at[0], wide * at[1],
+      wide * at[2]);
 }
 
 /* At 45 degrees p reflects the square of s [BornWolf1999, 14.2]. Off both the camera sees light
@@ -145,7 +195,7 @@ static abbe_result add_mirrors(abbe_known_run *run, bool crossed, abbe_error *er
                          "width: 1, height: 1, reflectance: 0,\n   transform: "
                          "[{translate: [0, 0, -60]}]}\n");
   for (int i = 0; i < 2; i++)
-    length += put_mirror(text + length, sizeof text - (size_t)length, i, places[i], normals[i]);
+    length += put_mirror(text + length, sizeof text - (size_t)length, i, 1, places[i], normals[i]);
   abbe_scene scene = {0};
   double nk[2] = {0};
   abbe_result result = abbe_known_scene(&scene, error, "%s", text);
@@ -159,6 +209,51 @@ static abbe_result add_mirrors(abbe_known_run *run, bool crossed, abbe_error *er
              crossed ? "two mirrors of " METAL " at 45 degrees, crossed"
                      : "two mirrors of " METAL " at 45 degrees, in one plane",
              crossed ? s * s * s : (s * s + s * s * s * s) / 2, METAL_NM, "Y", text, error);
+}
+
+/* The same mirrors between two plates of tourmaline with upright axes, a black wall behind the
+ * camera. In one plane what is level stays so; crossed, the mirrors turn it upright, and each wave
+ * of the one plate is the other of the other. */
+static abbe_result add_turned(abbe_known_run *run, bool crossed, abbe_error *error) {
+  const double c = sqrt(0.5), away = 2 * MIRROR, places[2][3] = {{0, 0, 0}, {0, 0, 4}};
+  const double normals[2][3] = {{-c, 0, c}, {crossed ? 0 : c, crossed ? c : 0, -c}};
+  char text[2048];
+  int length = abbe_number_format(
+      text, sizeof text,
+      "camera: {eye: [%g, 0, 0], target: [0, 0, 0], fov: 0.1}\n"
+      "background: 1\nlights: [{kind: point, position: [0, 9, 0], intensity: 1.0e-12}]\n"
+      "objects:\n- {name: wall, shape: rectangle, width: %g, height: %g, reflectance: 0,\n"
+      "   transform: [{rotate: {axis: [0, 1, 0], angle: 90}}, {translate: [%g, 0, 0]}]}\n",
+      -2 * away, MIRROR, MIRROR, -4 * away);
+  for (int i = 0; i < 2; i++)
+    length +=
+        put_mirror(text + length, sizeof text - (size_t)length, i, MIRROR, places[i], normals[i]);
+  abbe_number_format(
+      text + length, sizeof text - (size_t)length,
+      "- {name: a, shape: box, size: [%g, %g, %g], material: " STONE ", axis: [0, 0, 1],\n"
+      "   transform: [{translate: [%g, 0, 0]}]}\n"
+      "- {name: b, shape: box, size: [%g, %g, %g], material: " STONE ", axis: [0, 0, 1],\n"
+      "   transform: [{translate: [%g, %g, %g]}]}\n",
+      STONE_THICK, MIRROR, MIRROR, -away, crossed ? MIRROR : STONE_THICK,
+      crossed ? STONE_THICK : MIRROR, MIRROR, crossed ? 0.0 : away, crossed ? away : 0.0, 2 * away);
+  abbe_scene scene = {0};
+  double nk[2] = {0}, r[2], t[2], exact = 0;
+  abbe_result result = abbe_known_scene(&scene, error, "%s", text);
+  if (result == ABBE_OK)
+    result = abbe_material_nk(scene.object[1].conductor, STONE_NM, &nk[0], &nk[1], error);
+  if (result == ABBE_OK) result = plate_of(scene.object[3].material, r, t, error);
+  abbe_scene_free(&scene);
+  if (result != ABBE_OK) return result;
+  const double s = (sqrt(1 + 8 * abbe_closed_form_conductor(ABBE_PI / 4, nk[0], nk[1])) - 1) / 2;
+  for (int wave = 0; wave < 2; wave++) {
+    const int other = crossed ? 1 - wave : wave; /* the ordinary wave is level, s of the first */
+    const double mirrors = crossed ? s * s * s : wave == 0 ? s * s : s * s * s * s;
+    exact += t[wave] * mirrors * t[other] / (1 - r[wave] * mirrors * r[other] * mirrors) / 2;
+  }
+  return add(run,
+             crossed ? "two crossed mirrors of " METAL " between two plates of " STONE
+                     : "two mirrors of " METAL " in one plane between two plates of " STONE,
+             exact, STONE_NM, "Y", text, error);
 }
 
 /* What a metal face of normal n makes of the field of light along k, which becomes the mirrored
@@ -202,7 +297,7 @@ static abbe_result add_both_ways(abbe_known_run *run, bool photons, abbe_error *
       "   transform: [{rotate: {axis: [0, 1, 0], angle: 90}}, {translate: [-8, 0, 0]}]}\n",
       light, lamp[0], lamp[1], lamp[2]);
   for (int i = 0; i < 2; i++)
-    length += put_mirror(text + length, sizeof text - (size_t)length, i, places[i], normals[i]);
+    length += put_mirror(text + length, sizeof text - (size_t)length, i, 1, places[i], normals[i]);
   /* behind the lamp: photons are followed where mirrors show the camera a receiver */
   snprintf(text + length, sizeof text - (size_t)length,
            "- {name: wall, shape: rectangle, width: 2, height: 2, reflectance: 0.5,\n"
@@ -222,44 +317,6 @@ static abbe_result add_both_ways(abbe_known_run *run, bool photons, abbe_error *
              photons ? "right-handed light off two mirrors of " METAL ", as photons bring it"
                      : "right-handed light off two mirrors of " METAL ", as the camera sees it",
              photons ? all : all / 2, METAL_NM, photons ? "deposited" : "Y", text, error);
-}
-
-/* ---- tourmaline ---- */
-
-#define STONE "tourmaline-green"
-#define STONE_NM 640.0
-#define STONE_THICK 0.003
-
-/* Two plates, axes in their faces, straight on; nothing turns o into e. */
-static abbe_result add_tourmaline(abbe_known_run *run, bool crossed, abbe_error *error) {
-  char text[1024];
-  abbe_number_format(
-      text, sizeof text,
-      "camera: {eye: [0, 0, -20], target: [0, 0, 0], up: [0, 1, 0], fov: 0.1}\n" PANEL
-      "- {name: a, shape: box, size: [1, 1, %g], material: " STONE ", axis: [1, 0, 0]}\n"
-      "- {name: b, shape: box, size: [1, 1, %g], material: " STONE ", axis: [%s],\n"
-      "   transform: [{translate: [0, 0, 0.1]}]}\n",
-      STONE_THICK, STONE_THICK, crossed ? "0, 1, 0" : "1, 0, 0");
-  abbe_scene scene = {0};
-  double n[2], r[2], t[2];
-  abbe_result result = abbe_known_scene(&scene, error, "%s", text);
-  for (int wave = 0; wave < 2 && result == ABBE_OK; wave++) {
-    const abbe_material *m = scene.object[1].material;
-    result = abbe_material_n_along(m, 2 * wave, STONE_NM, &n[wave], error);
-    const double face = pow((n[wave] - 1) / (n[wave] + 1), 2);
-    const double per_m = abbe_material_attenuation_along(m, 2 * wave, STONE_NM);
-    abbe_closed_form_slab(face, exp(-per_m * STONE_THICK), &r[wave], &t[wave]);
-  }
-  abbe_scene_free(&scene);
-  if (result != ABBE_OK) return result;
-  double exact = 0;
-  for (int wave = 0; wave < 2; wave++) {
-    const int other = crossed ? 1 - wave : wave;
-    exact += t[wave] * t[other] / (1 - r[wave] * r[other]) / 2;
-  }
-  return add(run,
-             crossed ? "two plates of " STONE ", crossed" : "two plates of " STONE ", parallel",
-             exact, STONE_NM, "Y", text, error);
 }
 
 /* ---- the furnace ---- */
@@ -287,6 +344,7 @@ abbe_result abbe_known_polarised(abbe_known_run *run, abbe_error *error) {
   for (int i = 0; i < 2 && result == ABBE_OK; i++) result = add_mirrors(run, i == 1, error);
   for (int i = 0; i < 2 && result == ABBE_OK; i++) result = add_both_ways(run, i == 1, error);
   for (int i = 0; i < 2 && result == ABBE_OK; i++) result = add_tourmaline(run, i == 1, error);
+  for (int i = 0; i < 2 && result == ABBE_OK; i++) result = add_turned(run, i == 1, error);
   for (int i = 0; i < 3 && result == ABBE_OK; i++) result = add_furnace(run, stones[i], error);
   return result;
 }

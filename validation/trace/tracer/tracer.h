@@ -32,7 +32,7 @@
 
 /* Whether paths carry the light's polarisation, by which the scene's polarisers count. */
 typedef enum abbe_trace_polarisation {
-  ABBE_TRACE_POLARISATION_AUTO, /* where there is a polariser, with full physics */
+  ABBE_TRACE_POLARISATION_AUTO, /* with a polariser or crystals in line, in full physics */
   ABBE_TRACE_POLARISATION_ON,
   ABBE_TRACE_POLARISATION_OFF /* polarisers are left out, and so is their dimming */
 } abbe_trace_polarisation;

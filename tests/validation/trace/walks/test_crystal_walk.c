@@ -124,6 +124,12 @@ TEST(a_pleochroic_slab_passes_two_exponentials) {
   check_two_exponentials(PLEOCHROIC, MIST_BESIDE CALCITE("[1, 1, 0]"), calcite_n, pleochroic_per_m);
 }
 
+/* Along the axis both waves are ordinary: one exponential. */
+TEST(a_pleochroic_slab_passes_one_along_its_axis) {
+  check_two_exponentials(PLEOCHROIC, CALCITE("[0, 0, 1]"), (const double[2]){n_o, n_o},
+                         (const double[2]){30, 30});
+}
+
 #define THREE                                                                                      \
   "materials:\n- {name: spar, model: constant, coefficients: [1.68], source: made up,\n"           \
   "   biaxial: {alpha: {model: constant, coefficients: [1.53]},\n"                                 \
