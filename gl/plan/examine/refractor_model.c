@@ -359,7 +359,7 @@ static void note_layers(const abbe_scene *scene, abbe_plan *plan) {
 static void note_lost_glow(const abbe_scene *scene, abbe_plan *plan) {
   for (size_t r = 0; r < plan->refractor_count && !plan->glowing; r++) {
     const abbe_object *o = &scene->object[plan->refractor_object[r]];
-    if (!abbe_material_is_fluorescent(o->material)) continue;
+    if (plan->mirror[r] || !abbe_material_is_fluorescent(o->material)) continue;
     abbe_plan_note(plan,
                    "%s: drawn without its glow, which takes the default profile, no --model layers "
                    "and at most %d refractors; 'abbe trace' has it",
