@@ -88,13 +88,15 @@ static void change_smoothly(const line *l, double t, const abbe_specular_tree *b
   for (size_t k = 0; k < l->q->keys; k++) {
     const double step = l->q->key[k].step, weight = 1 / (double)l->q->points;
     abbe_specular_tree moved[2];
-    bool same[2];
+    bool same[2], felt = false;
     for (int s = 0; s < 2; s++) {
       look(l, 1 + 2 * k + (size_t)s, t, &moved[s]);
       same[s] = moved[s].signature == base->signature;
-      l->to->felt[k] = l->to->felt[k] || !same_hits(&moved[s], base, l->q->base->far);
+      felt = felt || !same_hits(&moved[s], base, l->q->base->far);
     }
-    if (!same[0] && !same[1]) continue; /* within a step of a jump on both sides */
+    l->to->felt[k] = l->to->felt[k] || felt;
+    /* Within a step of a jump on both sides, or nothing but rounding. */
+    if (!felt || (!same[0] && !same[1])) continue;
     const double by = weight / (step * (same[0] + same[1]));
     deposit(l, 1 + k, same[1] ? &moved[1] : base, by);
     deposit(l, 1 + k, same[0] ? &moved[0] : base, -by);
@@ -175,8 +177,9 @@ static void change_by_jump(const line *l, size_t k, const jump *j, const jump *c
   if (found == 0) return;
   const double by =
       place_of(moved[1] != NULL ? moved[1] : j) - place_of(moved[0] != NULL ? moved[0] : j);
+  if (fabs(by) <= 4 * NARROW) return;
   const double speed = by / (l->q->key[k].step * found);
-  l->to->felt[k] = l->to->felt[k] || fabs(by) > 4 * NARROW;
+  l->to->felt[k] = true;
   deposit(l, 1 + k, &below, speed);
   deposit(l, 1 + k, &above, -speed);
 }
@@ -198,8 +201,9 @@ static void change_between(const line *l, double low, double high) {
 
 static void run_line(const line *l, double first) {
   abbe_specular_tree tree;
+  look(l, 0, 0, &tree);
   double before = 0;
-  uint64_t signature = 0;
+  uint64_t signature = tree.signature;
   for (size_t i = 0; i < l->q->points; i++) {
     const double t = ((double)i + first) / (double)l->q->points;
     look(l, 0, t, &tree);
@@ -208,10 +212,12 @@ static void run_line(const line *l, double first) {
     for (size_t k = 0; k < tree.count; k++)
       l->to->light += l->weight * tree.hit[k].flux / (double)l->q->points;
     if (tree.count > 0) change_smoothly(l, t, &tree);
-    if (i > 0 && l->q->keys > 0 && signature != tree.signature) change_between(l, before, t);
+    if (l->q->keys > 0 && signature != tree.signature) change_between(l, before, t);
     before = t;
     signature = tree.signature;
   }
+  look(l, 0, 1, &tree);
+  if (l->q->keys > 0 && signature != tree.signature) change_between(l, before, 1);
 }
 
 /* ---- parts ---- */
@@ -361,73 +367,6 @@ void abbe_derivative_free(abbe_derivative *d) {
   free(d->sum);
   free(d->felt);
   *d = (abbe_derivative){0};
-}
-
-/* ---- numbers ---- */
-
-#define NAME_OF(code, name, unit) name,
-#define UNIT_OF(code, name, unit) unit,
-static const char *const names[] = {ABBE_DERIVATIVE_NUMBERS(NAME_OF)};
-static const char *const units[] = {ABBE_DERIVATIVE_NUMBERS(UNIT_OF)};
-
-const char *abbe_derivative_number_name(abbe_derivative_number which) {
-  return names[which];
-}
-
-const char *abbe_derivative_number_unit(abbe_derivative_number which) {
-  return units[which];
-}
-
-static double number(const double s[SUMS], const double middle[3], abbe_derivative_number which) {
-  double around = 0, at[3];
-  for (int k = 0; k < 3; k++) {
-    at[k] = s[3 + k] / s[1];
-    around += at[k] * at[k];
-  }
-  switch (which) {
-  case ABBE_DERIVATIVE_FLUX:
-    return s[1];
-  case ABBE_DERIVATIVE_CHROMA_X:
-  case ABBE_DERIVATIVE_CHROMA_Y:
-    return s[which - ABBE_DERIVATIVE_CHROMA_X] / (s[0] + s[1] + s[2]);
-  case ABBE_DERIVATIVE_SPREAD:
-    return sqrt(fmax(s[6] / s[1] - around, 0));
-  default:
-    return middle[which - ABBE_DERIVATIVE_PLACE_X] + at[which - ABBE_DERIVATIVE_PLACE_X];
-  }
-}
-
-/* Of the mean of all parts but one (PARTS: of all). */
-static double number_without(const abbe_derivative *d, abbe_derivative_number which, size_t row,
-                             size_t without) {
-  double s[SUMS] = {0}, change[SUMS] = {0}, near[2][SUMS];
-  const double count = without < PARTS ? PARTS - 1 : PARTS;
-  double size = 0;
-  for (size_t p = 0; p < PARTS; p++)
-    for (int k = 0; k < SUMS && p != without; k++) {
-      s[k] += d->sum[0][p][k] / count;
-      if (row > 0) change[k] += d->sum[row][p][k] / count;
-    }
-  if (row == 0) return number(s, d->middle, which);
-  for (int k = 0; k < SUMS; k++)
-    if (s[k] != 0) size = fmax(size, fabs(change[k] / s[k]));
-  if (size == 0) return s[1] > 0 ? 0 : NAN;
-  const double by = 1e-6 / size;
-  for (int k = 0; k < SUMS; k++)
-    for (int i = 0; i < 2; i++) near[i][k] = s[k] + (i == 0 ? -by : by) * change[k];
-  return (number(near[1], d->middle, which) - number(near[0], d->middle, which)) / (2 * by);
-}
-
-double abbe_derivative_number_of(const abbe_derivative *d, abbe_derivative_number which, size_t row,
-                                 double *error) {
-  const double all = number_without(d, which, row, PARTS);
-  double square = 0;
-  for (size_t p = 0; p < PARTS; p++) {
-    const double off = number_without(d, which, row, p) - all;
-    square += off * off;
-  }
-  *error = sqrt(square * (PARTS - 1) / PARTS);
-  return all;
 }
 
 /* ---- the map's layout ---- */
