@@ -12,6 +12,8 @@
 enum { PARTS = ABBE_DERIVATIVE_PARTS, SUMS = ABBE_DERIVATIVE_SUMS, MOST_JUMPS = 64 };
 /* Of a line: within so much a jump is found. */
 #define NARROW 1e-13
+/* Of the window: so far aside of a line a jump's slope is looked for. */
+#define ASIDE 1e-9
 
 typedef struct part {
   double (*map)[3]; /* [1 + keys][texels] */
@@ -165,20 +167,37 @@ static double only_in(const abbe_specular_tree *a, const abbe_specular_tree *b, 
   return sum;
 }
 
-static void change_by_jump(const line *l, size_t k, const jump *j, const jump *const moved[2]) {
+/* Lines along both axes cross an edge, and each sees a share of its change: by the square of the
+ * edge's normal along it, so that no line counts that an edge nearly lies along. */
+static double axis_share(const line *l, const jump *j) {
+  const double from = place_of(j) - 100 * ASIDE, to = place_of(j) + 100 * ASIDE;
+  jump beside[MOST_JUMPS];
+  for (int side = 0; side < 2; side++) {
+    line next = *l;
+    next.at[1 - l->axis] += side == 0 ? ASIDE : -ASIDE;
+    const jump *same = find_same(j, beside, find_jumps(&next, 0, from, to, beside));
+    if (same == NULL) continue;
+    const double slope = (place_of(same) - place_of(j)) / ASIDE;
+    return 2 / (1 + slope * slope);
+  }
+  return 0; /* along the line */
+}
+
+static void change_by_jump(const line *l, size_t k, const jump *j, double share,
+                           const jump *const moved[2]) {
   abbe_specular_tree below, above;
   look(l, 0, j->low, &below);
   look(l, 0, j->high, &above);
   if (below.count == 0 && above.count == 0) return;
   const int found = (moved[0] != NULL) + (moved[1] != NULL);
-  const double size = l->weight * (only_in(&below, &above, l) + only_in(&above, &below, l));
+  const double size = share * l->weight * (only_in(&below, &above, l) + only_in(&above, &below, l));
   l->to->jumps += size;
   l->to->lost += found == 0 ? size : 0;
   if (found == 0) return;
   const double by =
       place_of(moved[1] != NULL ? moved[1] : j) - place_of(moved[0] != NULL ? moved[0] : j);
   if (fabs(by) <= 4 * NARROW) return;
-  const double speed = by / (l->q->key[k].step * found);
+  const double speed = share * by / (l->q->key[k].step * found);
   l->to->felt[k] = true;
   deposit(l, 1 + k, &below, speed);
   deposit(l, 1 + k, &above, -speed);
@@ -188,13 +207,15 @@ static void change_by_jump(const line *l, size_t k, const jump *j, const jump *c
 static void change_between(const line *l, double low, double high) {
   jump here[MOST_JUMPS], moved[2][MOST_JUMPS];
   const size_t count = find_jumps(l, 0, low, high, here);
+  double share[MOST_JUMPS];
+  for (size_t i = 0; i < count; i++) share[i] = axis_share(l, &here[i]);
   for (size_t k = 0; k < l->q->keys; k++) {
     size_t counts[2];
     for (size_t s = 0; s < 2; s++) counts[s] = find_jumps(l, 1 + 2 * k + s, low, high, moved[s]);
     for (size_t i = 0; i < count; i++) {
       const jump *same[2];
       for (int s = 0; s < 2; s++) same[s] = find_same(&here[i], moved[s], counts[s]);
-      change_by_jump(l, k, &here[i], same);
+      change_by_jump(l, k, &here[i], share[i], same);
     }
   }
 }
