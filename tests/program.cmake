@@ -42,6 +42,7 @@ foreach(name
     materials_exchange_command
     gem_command
     gem_report_command
+    derive_command
     pixel_command
     printable_output
     relight_command

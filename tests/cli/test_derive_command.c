@@ -1,0 +1,70 @@
+/* The subcommand derive: what it says of a mirror ball in a room, whose light is known. */
+#include "tests/cli/run_json.h"
+
+#include "base/maths.h"
+#include "colorimetry/image/exr.h"
+
+#include <math.h>
+
+#define BALL_M 0.05
+#define LAMP_M 0.3
+#define DERIVE "$abbe derive ball.yaml --points 8 "
+
+static void begin(void) {
+  run_setup();
+  run_must(
+      "cat >ball.yaml <<'Y'\n"
+      "camera: {eye: [0, -0.9, 0], target: [0, 0, 0]}\n"
+      "lights: [{name: lamp, kind: point, position: [0, 0, 0.3], intensity: 1, illuminant: E}]\n"
+      "objects:\n"
+      "- {name: ball, shape: sphere, radius: 0.05, mirror: 1}\n"
+      "- {name: room, shape: box, size: [2, 2, 2], reflectance: 0.5}\n"
+      "Y");
+}
+
+GROUP(begin, run_teardown);
+
+static double value(const cJSON *row, const char *name, int error) {
+  return cJSON_GetNumberValue(cJSON_GetArrayItem(json_item(row, name), error));
+}
+
+/* All that the ball catches lands in the room: its solid angle 2 pi (1 - cos) from the lamp, which
+ * grows with its silhouette alone. */
+TEST(a_balls_light_by_its_radius) {
+  HELD(cJSON, json) =
+      run_json(DERIVE "--by objects.ball.radius --by camera.eye.1 --lines 512 --json", 0);
+  assert_contains(run_errors, "nothing that lands depends on 'camera.eye.1'");
+  const cJSON *rows = json_item(json, "rows");
+  const double cosine = sqrt(1 - BALL_M * BALL_M / (LAMP_M * LAMP_M));
+  const double exact[2] = {2 * ABBE_PI * (1 - cosine),
+                           2 * ABBE_PI * BALL_M / (LAMP_M * LAMP_M * cosine)};
+  for (int i = 0; i < 2; i++) {
+    const cJSON *row = cJSON_GetArrayItem(rows, i);
+    const double error = value(row, "flux", 1);
+    assert_true(error > 0 && error < 0.04 * exact[i]);
+    assert_near(value(row, "flux", 0), exact[i], 4 * error);
+  }
+  assert_true(value(cJSON_GetArrayItem(rows, 2), "flux", 0) == 0);
+}
+
+TEST(a_map_has_layers_of_each_key) {
+  run_must(DERIVE "--by objects.ball.radius --lines 64 --map 8x8 -q -o map.exr");
+  MADE(abbe_image, image, abbe_exr_read(run_path("map.exr"), &image, &error));
+  assert_int_equal(image.width, 8);
+  static const char *const layers[] = {"Y", "stderr.Y", "objects.ball.radius.Y",
+                                       "stderr.objects.ball.radius.Y"};
+  for (size_t i = 0; i < sizeof layers / sizeof *layers; i++)
+    assert_true(abbe_image_find_channel(&image, layers[i]) < image.channels);
+}
+
+TEST(refusals) {
+  run_fails(DERIVE "--by objects.ball.radios", 1, "did you mean 'radius'?");
+  run_fails(DERIVE "--by objects.ball.shape", 1, "is no number");
+  run_fails(DERIVE "--by lights.lamp.illuminant", 1, "is no number");
+  run_fails(DERIVE "--by materials.glas.n", 1, "no refractor is made of 'glas'");
+  run_fails(DERIVE, 2, "Give --by KEY");
+  run_fails(DERIVE "--by objects.ball.radius --lines 64 -q -o gone/map.exr", 1,
+            "its folder is not there");
+  run_fails("$abbe derive nowhere.yaml --by objects.ball.radius", 1,
+            "nowhere.yaml: cannot be opened");
+}
