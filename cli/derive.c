@@ -29,6 +29,9 @@ enum {
 };
 enum { MOST_KEYS = 16, MOST_SIDE = 4096 };
 
+/* The map and each derivative of it are summed in double by every thread. */
+enum { MOST_TEXELS = 16 << 20 };
+
 typedef struct request {
   const char *program, *path, *materials, *exr;
   bool json, quiet;
@@ -294,6 +297,11 @@ static abbe_result lay_out(const request *q, abbe_derivative_desc *desc, abbe_er
   if (q->exr == NULL) return ABBE_OK;
   desc->width = q->width > 0 ? q->width : q->map.side > 0 ? q->map.side : 128;
   desc->height = q->height > 0 ? q->height : desc->width;
+  if ((1 + desc->keys) * desc->width * desc->height > MOST_TEXELS)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a map of %zu x %zu texels by %zu keys has more than %d million of them; "
+                          "ask for a smaller --map, or for fewer keys at a time",
+                          desc->width, desc->height, desc->keys, MOST_TEXELS >> 20);
   desc->layout = q->map.layout;
   return q->map.like != NULL ? ABBE_OK : abbe_derivative_fit(desc, &desc->layout, error);
 }

@@ -62,6 +62,7 @@ TEST(refusals) {
   run_fails(DERIVE "--by objects.ball.shape", 1, "is no number");
   run_fails(DERIVE "--by lights.lamp.illuminant", 1, "is no number");
   run_fails(DERIVE "--by materials.glas.n", 1, "no refractor is made of 'glas'");
+  run_fails(DERIVE "--by objects.ball.radius --map 4096x4096 -o map.exr", 1, "16 million");
   run_fails(DERIVE, 2, "Give --by KEY");
   run_fails(DERIVE "--by objects.ball.radius --lines 64 -q -o gone/map.exr", 1,
             "its folder is not there");
