@@ -371,10 +371,10 @@ abbe_result find_source(const OCIO::ConstConfigRcPtr &config, const abbe_display
 
 /* An ICC profile becomes a display as OpenColorIO has it, with the configuration's views for it. */
 OCIO::ConstConfigRcPtr with_profile(const OCIO::ConstConfigRcPtr &config, std::string *display) {
-  const std::filesystem::path path = std::filesystem::current_path() / *display;
-  if (path.extension() != ".icc" && path.extension() != ".icm") return config;
+  const std::filesystem::path name = *display;
+  if (name.extension() != ".icc" && name.extension() != ".icm") return config;
   OCIO::ConfigRcPtr made = config->createEditableCopy();
-  *display = made->getDisplay(made->instantiateDisplayFromICCProfile(path.c_str()));
+  *display = made->getDisplay(made->instantiateDisplayFromICCProfile(absolute(name).c_str()));
   return made;
 }
 
