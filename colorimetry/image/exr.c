@@ -54,23 +54,14 @@ static abbe_image_window window_of(exr_attr_box2i_t box) {
   return (abbe_image_window){box.min.x, box.min.y, box.max.x, box.max.y};
 }
 
-/* A picture of the display window, all 0. */
-static abbe_result make_image(exr_context_t context, const abbe_exr_stream *s,
-                              const abbe_exr_layout *l, abbe_image *image, double *unit,
-                              abbe_error *error) {
-  const char *names[ABBE_IMAGE_MAX_CHANNELS];
-  for (int i = 0; i < l->channels->num_channels; i++) names[i] = l->channels->entries[i].name.str;
-  abbe_result result =
-      abbe_image_make((size_t)abbe_exr_width(l->display), (size_t)abbe_exr_height(l->display),
-                      (size_t)l->channels->num_channels, names, image, error);
-  image->display_window = window_of(l->display);
-  image->data_window = window_of(l->data);
-  if (l->parts > 1)
-    snprintf(image->part, sizeof image->part, "%d%s%.24s%s of %d", l->part + 1, l->name ? " '" : "",
-             l->name ? l->name : "", l->name ? "'" : "", l->parts);
-  return result == ABBE_OK ? abbe_exr_attributes_read(context, l->part, s, image, unit, error)
-                           : result;
-}
+/* A part whose chunks are read into the picture's channels from `first` on. */
+typedef struct source {
+  abbe_exr_layout layout;
+  exr_decode_pipeline_t pipe;
+  exr_result_t (*decompress)(exr_decode_pipeline_t *pipe); /* the library's; NULL: nothing packs */
+  double unit;
+  int first;
+} source;
 
 /* A file whose chunks are read; `next` and what follows are of scan lines alone: the chunk that
  * comes next, `step` chunks after the one before, of all in a pass. In the first pass lines that
@@ -80,18 +71,43 @@ struct abbe_exr_reader {
   char *path;
   FILE *file;
   exr_context_t context;
-  abbe_exr_layout layout;
-  exr_decode_pipeline_t pipe;
-  exr_result_t (*decompress)(exr_decode_pipeline_t *pipe); /* the library's; NULL: nothing packs */
-  double unit;
+  source part[2]; /* the picture's, and what is data beside it */
+  size_t parts;
   int64_t next, step, read, chunks;
   bool again; /* not the first pass */
 };
 
+static int channels_of(const abbe_exr_reader *r) {
+  const source *last = &r->part[r->parts - 1];
+  return last->first + last->layout.channels->num_channels;
+}
+
+/* A picture of the display window, all 0. */
+static abbe_result make_image(abbe_exr_reader *r, const abbe_exr_layout *l, abbe_image *image,
+                              abbe_error *error) {
+  const char *names[ABBE_IMAGE_MAX_CHANNELS];
+  for (size_t p = 0; p < r->parts; p++)
+    for (int i = 0; i < r->part[p].layout.channels->num_channels; i++)
+      names[r->part[p].first + i] = r->part[p].layout.channels->entries[i].name.str;
+  abbe_result result =
+      abbe_image_make((size_t)abbe_exr_width(l->display), (size_t)abbe_exr_height(l->display),
+                      (size_t)channels_of(r), names, image, error);
+  image->display_window = window_of(l->display);
+  image->data_window = window_of(l->data);
+  if (l->parts > (int)r->parts)
+    snprintf(image->part, sizeof image->part, "%d%s%.24s%s of %d", l->part + 1, l->name ? " '" : "",
+             l->name ? l->name : "", l->name ? "'" : "", l->parts);
+  for (size_t p = 0; p < r->parts && result == ABBE_OK; p++)
+    result =
+        abbe_exr_unit_read(r->context, r->part[p].layout.part, &r->stream, &r->part[p].unit, error);
+  return result == ABBE_OK ? abbe_exr_attributes_read(r->context, l->part, &r->stream, image, error)
+                           : result;
+}
+
 /* Where the chunk that is decoded goes: its first sample belongs to the picture's pixel (x, y),
  * which may lie outside. */
 typedef struct place {
-  const abbe_exr_reader *reader;
+  const source *part;
   const abbe_image *image;
   int64_t x, y;
 } place;
@@ -136,8 +152,8 @@ static exr_result_t unpack(exr_decode_pipeline_t *pipe) {
       const int bytes = pipe->channels[c].bytes_per_element, type = pipe->channels[c].data_type;
       const bool shown = y >= 0 && y < (int64_t)image->height;
       for (int64_t x = from; shown && x < past; x++)
-        image->data[(y * width + to->x + x) * (int64_t)image->channels + c] =
-            (float)(to->reader->unit * (double)sample_of(line + x * bytes, type));
+        image->data[(y * width + to->x + x) * (int64_t)image->channels + to->part->first + c] =
+            (float)(to->part->unit * (double)sample_of(line + x * bytes, type));
       line += chunk_width * bytes;
     }
   return EXR_ERR_SUCCESS;
@@ -147,15 +163,16 @@ static exr_result_t unpack(exr_decode_pipeline_t *pipe) {
 static exr_result_t decompress(exr_decode_pipeline_t *pipe) {
   const place *to = pipe->decoding_user_data;
   if (pipe->chunk.packed_size == pipe->chunk.unpacked_size) return EXR_ERR_SUCCESS;
-  return to->reader->decompress == NULL ? EXR_ERR_CORRUPT_CHUNK : to->reader->decompress(pipe);
+  return to->part->decompress == NULL ? EXR_ERR_CORRUPT_CHUNK : to->part->decompress(pipe);
 }
 
-static exr_result_t begin(abbe_exr_reader *r, const exr_chunk_info_t *chunk) {
-  exr_result_t rv = exr_decoding_initialize(r->context, r->layout.part, chunk, &r->pipe);
-  if (rv == 0) rv = exr_decoding_choose_default_routines(r->context, r->layout.part, &r->pipe);
-  r->decompress = r->pipe.decompress_fn;
-  r->pipe.decompress_fn = decompress;
-  r->pipe.unpack_and_convert_fn = unpack;
+static exr_result_t begin(exr_context_t context, source *from, const exr_chunk_info_t *chunk) {
+  const int part = from->layout.part;
+  exr_result_t rv = exr_decoding_initialize(context, part, chunk, &from->pipe);
+  if (rv == 0) rv = exr_decoding_choose_default_routines(context, part, &from->pipe);
+  from->decompress = from->pipe.decompress_fn;
+  from->pipe.decompress_fn = decompress;
+  from->pipe.unpack_and_convert_fn = unpack;
   return rv;
 }
 
@@ -168,16 +185,17 @@ static bool is_whole(const exr_decode_pipeline_t *pipe) {
 }
 
 /* Decodes one chunk of at most width x height pixels. */
-static exr_result_t read_chunk(abbe_exr_reader *r, const exr_chunk_info_t *chunk, int64_t width,
-                               int64_t height, place *to) {
+static exr_result_t read_chunk(exr_context_t context, source *from, const exr_chunk_info_t *chunk,
+                               int64_t width, int64_t height, place *to) {
   if (chunk->width < 1 || chunk->height < 1 || chunk->width > width || chunk->height > height)
     return EXR_ERR_CORRUPT_CHUNK;
-  exr_result_t rv = r->pipe.context == NULL
-                        ? begin(r, chunk)
-                        : exr_decoding_update(r->context, r->layout.part, chunk, &r->pipe);
-  r->pipe.decoding_user_data = to;
-  if (rv == 0 && !is_whole(&r->pipe)) rv = EXR_ERR_CORRUPT_CHUNK;
-  return rv == 0 ? exr_decoding_run(r->context, r->layout.part, &r->pipe) : rv;
+  exr_result_t rv = from->pipe.context == NULL
+                        ? begin(context, from, chunk)
+                        : exr_decoding_update(context, from->layout.part, chunk, &from->pipe);
+  to->part = from;
+  from->pipe.decoding_user_data = to;
+  if (rv == 0 && !is_whole(&from->pipe)) rv = EXR_ERR_CORRUPT_CHUNK;
+  return rv == 0 ? exr_decoding_run(context, from->layout.part, &from->pipe) : rv;
 }
 
 static bool is_shown(const place *to, int64_t width, int64_t height) {
@@ -194,20 +212,23 @@ static void repeat_line(const abbe_image *image, int64_t line, int64_t past) {
 
 /* Chunks of which nothing is shown are not decoded. */
 static exr_result_t read_lines(abbe_exr_reader *r, int64_t chunk, const abbe_image *image) {
-  const abbe_exr_layout *l = &r->layout;
+  const abbe_exr_layout *l = &r->part[0].layout;
   int32_t lines = 0;
   const int64_t width = abbe_exr_width(l->data), height = abbe_exr_height(l->data);
   const int64_t dx = (int64_t)l->data.min.x - l->display.min.x;
   const int64_t dy = (int64_t)l->data.min.y - l->display.min.y;
-  exr_chunk_info_t info = {0};
   exr_result_t rv = exr_get_scanlines_per_chunk(r->context, l->part, &lines);
   if (rv != 0 || lines < 1) return rv != 0 ? rv : EXR_ERR_CORRUPT_CHUNK;
   const int64_t y = chunk * lines;
   r->chunks = (height + lines - 1) / lines;
-  place to = {.reader = r, .image = image, .x = dx, .y = dy + y};
+  place to = {.image = image, .x = dx, .y = dy + y};
   if (!is_shown(&to, width, lines)) return 0;
-  rv = exr_read_scanline_chunk_info(r->context, l->part, (int)(l->data.min.y + y), &info);
-  if (rv == 0) rv = read_chunk(r, &info, width, height - y, &to);
+  for (size_t p = 0; p < r->parts && rv == 0; p++) {
+    exr_chunk_info_t info = {0};
+    rv = exr_read_scanline_chunk_info(r->context, r->part[p].layout.part, (int)(l->data.min.y + y),
+                                      &info);
+    if (rv == 0) rv = read_chunk(r->context, &r->part[p], &info, width, height - y, &to);
+  }
   const int64_t past = y + r->step * lines < height ? y + r->step * lines : height;
   if (rv == 0 && !r->again) repeat_line(image, dy + y + lines - 1, dy + past);
   return rv;
@@ -233,7 +254,7 @@ static exr_result_t read_tiles(abbe_exr_reader *r, const abbe_exr_layout *l, int
   exr_tile_level_mode_t levels;
   exr_tile_round_mode_t rounding;
   const int64_t width = abbe_exr_width(l->data), height = abbe_exr_height(l->data);
-  place to = {.reader = r, .image = image};
+  place to = {.image = image};
   exr_result_t rv = exr_get_tile_descriptor(context, l->part, &w, &h, &levels, &rounding);
   if (rv == 0 && (w < 1 || h < 1)) return EXR_ERR_CORRUPT_CHUNK;
   for (int64_t y = 0; rv == 0 && y < height; y += h)
@@ -244,7 +265,7 @@ static exr_result_t read_tiles(abbe_exr_reader *r, const abbe_exr_layout *l, int
       if (!is_shown(&to, w, h)) continue;
       rv = exr_read_tile_chunk_info(context, l->part, (int)(x / w), (int)(y / h), level, level,
                                     &chunk);
-      if (rv == 0) rv = read_chunk(r, &chunk, width - x, height - y, &to);
+      if (rv == 0) rv = read_chunk(context, &r->part[0], &chunk, width - x, height - y, &to);
     }
   return rv;
 }
@@ -318,6 +339,17 @@ static exr_result_t start(abbe_exr_reader *r) {
   return exr_start_read(&r->context, r->path, &setup);
 }
 
+/* A part that is asked for by its name comes alone. */
+static abbe_result find_parts(abbe_exr_reader *r, abbe_error *error) {
+  abbe_exr_layout *picture = &r->part[0].layout, *data = &r->part[1].layout;
+  r->parts = 1;
+  ABBE_TRY(abbe_exr_layout_find(r->context, &r->stream, picture, error));
+  if (r->stream.part != NULL || !abbe_exr_find_data(r->context, picture, data)) return ABBE_OK;
+  r->parts = 2;
+  r->part[1].first = picture->channels->num_channels;
+  return abbe_exr_check_layout(&r->stream, data, channels_of(r), error);
+}
+
 abbe_result abbe_exr_open(const char *path, abbe_exr_reader **out, abbe_error *error) {
   abbe_exr_reader *r = calloc(1, sizeof *r);
   *out = NULL;
@@ -327,11 +359,10 @@ abbe_result abbe_exr_open(const char *path, abbe_exr_reader **out, abbe_error *e
     return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", path);
   }
   r->stream = (abbe_exr_stream){.path = r->path, .fd = -1};
-  r->unit = 1;
   abbe_result result = open_stream(&r->stream, &r->file, error);
   const exr_result_t rv = result == ABBE_OK ? start(r) : 0;
   if (rv != 0) result = abbe_exr_fail_open(&r->stream, rv, error);
-  if (result == ABBE_OK) result = abbe_exr_layout_find(r->context, &r->stream, &r->layout, error);
+  if (result == ABBE_OK) result = find_parts(r, error);
   if (result == ABBE_OK)
     *out = r;
   else
@@ -341,7 +372,8 @@ abbe_result abbe_exr_open(const char *path, abbe_exr_reader **out, abbe_error *e
 
 void abbe_exr_close(abbe_exr_reader *r) {
   if (r == NULL) return;
-  if (r->context != NULL) exr_decoding_destroy(r->context, &r->pipe);
+  for (int p = 0; p < 2 && r->context != NULL; p++)
+    exr_decoding_destroy(r->context, &r->part[p].pipe);
   if (r->context != NULL) exr_finish(&r->context);
   if (r->file != NULL) fclose(r->file);
   free(r->path);
@@ -349,9 +381,9 @@ void abbe_exr_close(abbe_exr_reader *r) {
 }
 
 void abbe_exr_find_levels(const abbe_exr_reader *r, abbe_exr_levels *out) {
-  const abbe_exr_layout *l = &r->layout;
+  const abbe_exr_layout *l = &r->part[0].layout;
   *out = (abbe_exr_levels){count_levels(r->context, l), (size_t)abbe_exr_width(l->display),
-                           (size_t)abbe_exr_height(l->display), (size_t)l->channels->num_channels};
+                           (size_t)abbe_exr_height(l->display), (size_t)channels_of(r)};
 }
 
 /* What of an image could be made is given up where it cannot be read. */
@@ -365,15 +397,14 @@ static abbe_result finish(const abbe_exr_reader *r, exr_result_t rv, abbe_image 
 static abbe_result make(abbe_exr_reader *r, const abbe_exr_layout *l, abbe_image *out,
                         abbe_error *error) {
   *out = (abbe_image){0};
-  r->unit = 1;
-  const abbe_result result = make_image(r->context, &r->stream, l, out, &r->unit, error);
+  const abbe_result result = make_image(r, l, out, error);
   if (result != ABBE_OK) abbe_image_free(out);
   return result;
 }
 
 abbe_result abbe_exr_read_level(abbe_exr_reader *r, size_t level, const size_t window[4],
                                 abbe_image *out, abbe_error *error) {
-  abbe_exr_layout l = r->layout;
+  abbe_exr_layout l = r->part[0].layout;
   *out = (abbe_image){0};
   if (l.storage != EXR_STORAGE_TILED)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: it has no levels", r->path);
@@ -384,7 +415,7 @@ abbe_result abbe_exr_read_level(abbe_exr_reader *r, size_t level, const size_t w
 
 abbe_result abbe_exr_read_first(abbe_exr_reader *r, size_t most, abbe_image *out,
                                 abbe_error *error) {
-  const abbe_exr_layout *l = &r->layout;
+  const abbe_exr_layout *l = &r->part[0].layout;
   exr_result_t rv = 0;
   ABBE_TRY(make(r, l, out, error));
   r->next = r->read = 0;

@@ -1,7 +1,10 @@
 /* exr.h: images as OpenEXR files, through OpenEXR's C core API.
  *
- * Writes one scan-line part, float32 or half, ZIP compressed, named layers as channel-name
- * prefixes, chromaticities and text attributes in the header. Reads any scan-line or tiled flat
+ * Writes scan lines, float32 or half, ZIP compressed, named layers as channel-name prefixes,
+ * chromaticities and text attributes in the header. R, G, B of a space that has one get its
+ * colorInteropID [ColorInterop2026]; what is no colour beside them (stderr.*, covariance.*,
+ * normal.*, depth.*) is in a second part, "data", that is marked so, and both are read as one
+ * picture. Reads any scan-line or tiled flat
  * part that the library can decode (the full-resolution level; float, half and whole numbers become
  * float32). A picture is its display window: pixels for which the file has no data
  * are 0, data outside it are left out. Sizes are checked before allocating.
@@ -28,7 +31,8 @@ abbe_result abbe_exr_write_half(const char *path, const abbe_image *image, abbe_
 #define ABBE_EXR_FREE_BYTES ((size_t)1 << 30)
 
 /* Reads path: of several parts the first with R, G and B or X, Y and Z, else with Y, else that is
- * flat; or FILE#PART, a part by its name or by its number, from 1. ABBE_NOT_FOUND where there is no
+ * flat, and with it the first part marked as data that has its windows; or FILE#PART, a part alone
+ * by its name or by its number, from 1. ABBE_NOT_FOUND where there is no
  * such part; ABBE_PARSE for a broken or truncated file, and for an abbe:stored_unit that is no
  * power of two; ABBE_UNSUPPORTED for deep data, subsampled channels, tiles of PIZ above 16384
  * pixels a side, pixels that are too many for the file, and compression that the OpenEXR that runs

@@ -146,12 +146,12 @@ static abbe_result check_tiles(exr_context_t context, const abbe_exr_stream *s,
                         s->path, (unsigned)w, (unsigned)h, MOST);
 }
 
-static abbe_result check_channels(const abbe_exr_stream *s, const abbe_exr_layout *l,
+static abbe_result check_channels(const abbe_exr_stream *s, const abbe_exr_layout *l, int all,
                                   abbe_error *error) {
   if (!is_flat(l->storage)) return unsupported(s, "deep data cannot be read", error);
-  if (l->channels->num_channels < 1 || l->channels->num_channels > ABBE_IMAGE_MAX_CHANNELS)
+  if (l->channels->num_channels < 1 || all > ABBE_IMAGE_MAX_CHANNELS)
     return abbe_error_set(error, ABBE_PARSE, "%s: it has %d channels; 1 to %d can be read", s->path,
-                          l->channels->num_channels, ABBE_IMAGE_MAX_CHANNELS);
+                          all, ABBE_IMAGE_MAX_CHANNELS);
   for (int i = 0; i < l->channels->num_channels; i++)
     if (l->channels->entries[i].x_sampling != 1 || l->channels->entries[i].y_sampling != 1)
       return unsupported(s, "subsampled channels cannot be read", error);
@@ -160,9 +160,9 @@ static abbe_result check_channels(const abbe_exr_stream *s, const abbe_exr_layou
 
 /* No more data than the file's bytes can hold at the codec's best, and no window that is wider than
  * a picture may be. */
-static bool can_be_held(const abbe_exr_stream *s, const abbe_exr_layout *l) {
-  double bytes = (double)abbe_exr_width(l->data) * (double)abbe_exr_height(l->data) *
-                 l->channels->num_channels * sizeof(float);
+static bool can_be_held(const abbe_exr_stream *s, const abbe_exr_layout *l, int channels) {
+  double bytes =
+      (double)abbe_exr_width(l->data) * (double)abbe_exr_height(l->data) * channels * sizeof(float);
   const exr_attr_box2i_t window[] = {l->data, l->display};
   for (int i = 0; i < 2; i++)
     if (abbe_exr_width(window[i]) < 1 || abbe_exr_width(window[i]) > ABBE_IMAGE_MAX_SIDE ||
@@ -171,24 +171,24 @@ static bool can_be_held(const abbe_exr_stream *s, const abbe_exr_layout *l) {
   return bytes <= codec_of((int)l->compression).best * (double)s->size;
 }
 
-static abbe_result check_layout(const abbe_exr_stream *s, const abbe_exr_layout *l,
-                                abbe_error *error) {
-  abbe_result result = check_channels(s, l, error);
+abbe_result abbe_exr_check_layout(const abbe_exr_stream *s, const abbe_exr_layout *l, int channels,
+                                  abbe_error *error) {
+  abbe_result result = check_channels(s, l, channels, error);
   if (result != ABBE_OK) return result;
-  if (!can_be_held(s, l))
+  if (!can_be_held(s, l, channels))
     return abbe_error_set(
         error, ABBE_PARSE,
         "%s: its header promises %lld x %lld pixels of data, %lld x %lld to be "
         "shown and %d channels, which its %lld bytes cannot hold or which is over "
         "%d a side",
         s->path, (long long)abbe_exr_width(l->data), (long long)abbe_exr_height(l->data),
-        (long long)abbe_exr_width(l->display), (long long)abbe_exr_height(l->display),
-        l->channels->num_channels, (long long)s->size, ABBE_IMAGE_MAX_SIDE);
+        (long long)abbe_exr_width(l->display), (long long)abbe_exr_height(l->display), channels,
+        (long long)s->size, ABBE_IMAGE_MAX_SIDE);
   const exr_attr_box2i_t window[] = {l->data, l->display};
   for (int i = 0; result == ABBE_OK && i < 2; i++)
-    result = abbe_image_check_expansion(
-        s->path, (size_t)abbe_exr_width(window[i]), (size_t)abbe_exr_height(window[i]),
-        (size_t)l->channels->num_channels, (size_t)s->size, ABBE_EXR_FREE_BYTES, error);
+    result = abbe_image_check_expansion(s->path, (size_t)abbe_exr_width(window[i]),
+                                        (size_t)abbe_exr_height(window[i]), (size_t)channels,
+                                        (size_t)s->size, ABBE_EXR_FREE_BYTES, error);
   return result;
 }
 
@@ -257,10 +257,42 @@ abbe_result abbe_exr_layout_find(exr_context_t context, const abbe_exr_stream *s
   if (best < 0) return no_such_part(context, s, l.parts, error);
   ABBE_TRY(check_codec(s, find_codec(s, out->part), error));
   ABBE_TRY(check_tiles(context, s, out, error));
-  return check_layout(s, out, error);
+  return abbe_exr_check_layout(s, out, out->channels->num_channels, error);
 }
 
-/* abbe:stored_unit, which whole files are in; *unit stays what it is where the text is none. */
+static const char *part_text(exr_context_t context, int part, const char *name) {
+  const exr_attribute_t *a = NULL;
+  if (exr_get_attribute_by_name(context, part, name, &a) != 0) return NULL;
+  return a->type == EXR_ATTR_STRING ? a->string->str : NULL;
+}
+
+static bool shares_a_channel(const exr_attr_chlist_t *a, const exr_attr_chlist_t *b) {
+  for (int i = 0; i < a->num_channels; i++)
+    for (int k = 0; k < b->num_channels; k++)
+      if (strcmp(a->entries[i].name.str, b->entries[k].name.str) == 0) return true;
+  return false;
+}
+
+bool abbe_exr_find_data(exr_context_t context, const abbe_exr_layout *picture,
+                        abbe_exr_layout *out) {
+  abbe_exr_layout l = {.parts = picture->parts};
+  if (picture->storage != EXR_STORAGE_SCANLINE) return false;
+  for (int i = 0; i < l.parts; i++) {
+    const char *id = part_text(context, i, ABBE_EXR_ID_NAME);
+    if (i == picture->part || id == NULL || strcmp(id, "data") != 0) continue;
+    if (read_part(context, i, &l) != 0) continue;
+    if (l.storage != picture->storage || l.compression != picture->compression ||
+        memcmp(&l.data, &picture->data, sizeof l.data) != 0 ||
+        memcmp(&l.display, &picture->display, sizeof l.display) != 0 ||
+        shares_a_channel(l.channels, picture->channels))
+      continue;
+    *out = l;
+    return true;
+  }
+  return false;
+}
+
+/* A power of two; *unit stays what it is where the text is none. */
 static bool read_unit(const char *text, double *unit) {
   const char *end;
   int exponent;
@@ -270,6 +302,15 @@ static bool read_unit(const char *text, double *unit) {
     return false;
   *unit = value;
   return true;
+}
+
+abbe_result abbe_exr_unit_read(exr_context_t context, int part, const abbe_exr_stream *s,
+                               double *unit, abbe_error *error) {
+  const char *text = part_text(context, part, ABBE_EXR_UNIT_NAME);
+  *unit = 1;
+  if (text == NULL || read_unit(text, unit)) return ABBE_OK;
+  return abbe_error_set(error, ABBE_PARSE, "%s: %s is '%.40s'; a power of two is right", s->path,
+                        ABBE_EXR_UNIT_NAME, text);
 }
 
 /* The layout of Ocean: CHANNEL.wavelength is what light the channel has, in metres or as a text
@@ -290,7 +331,7 @@ static abbe_result name_band(const exr_attribute_t *a, const abbe_exr_stream *s,
   if (a->type == EXR_ATTR_FLOAT) metres = (double)a->f;
   if (a->type == EXR_ATTR_DOUBLE) metres = a->d;
   if (a->type == EXR_ATTR_STRING) {
-    if (!abbe_number_read(a->string->str, &end, &metres)) return ABBE_OK;
+    if (a->string->str == NULL || !abbe_number_read(a->string->str, &end, &metres)) return ABBE_OK;
     end += strspn(end, " ");
     if (strcmp(end, "nm") == 0) metres *= 1e-9;
     if (strcmp(end, "nm") != 0 && strcmp(end, "m") != 0 && *end != '\0') return ABBE_OK;
@@ -309,8 +350,14 @@ static abbe_result name_band(const exr_attribute_t *a, const abbe_exr_stream *s,
   return ABBE_OK;
 }
 
+/* Texts that are the file's, not the picture's. */
+static bool is_own(const char *name) {
+  return strcmp(name, ABBE_EXR_STORAGE_NAME) == 0 || strcmp(name, ABBE_EXR_UNIT_NAME) == 0 ||
+         strcmp(name, "name") == 0;
+}
+
 abbe_result abbe_exr_attributes_read(exr_context_t context, int part, const abbe_exr_stream *s,
-                                     abbe_image *image, double *unit, abbe_error *error) {
+                                     abbe_image *image, abbe_error *error) {
   int32_t count = 0;
   bool aces = false;
   if (exr_get_attribute_count(context, part, &count) != 0) return ABBE_OK;
@@ -326,12 +373,7 @@ abbe_result abbe_exr_attributes_read(exr_context_t context, int part, const abbe
     if (a->type == EXR_ATTR_INT && strcmp(a->name, "acesImageContainerFlag") == 0) aces = a->i == 1;
     ABBE_TRY(name_band(a, s, image, error));
     if (a->type != EXR_ATTR_STRING || a->name[0] == '\0' || a->string->str == NULL) continue;
-    if (strcmp(a->name, ABBE_EXR_STORAGE_NAME) == 0) continue;
-    if (strcmp(a->name, ABBE_EXR_UNIT_NAME) == 0) {
-      if (read_unit(a->string->str, unit)) continue;
-      return abbe_error_set(error, ABBE_PARSE, "%s: %s is '%.40s'; a power of two is right",
-                            s->path, ABBE_EXR_UNIT_NAME, a->string->str);
-    }
+    if (is_own(a->name)) continue;
     if (image->attribute_count == ABBE_IMAGE_MAX_ATTRIBUTES)
       return abbe_error_set(error, ABBE_UNSUPPORTED,
                             "%s: it has more than %d text attributes, which is as many as can be "
@@ -342,5 +384,5 @@ abbe_result abbe_exr_attributes_read(exr_context_t context, int part, const abbe
   if (!aces) return ABBE_OK;
   /* An ACES container has AP0, whatever else the file says [ColorInterop2026]. */
   memset(image->xy, 0, sizeof image->xy);
-  return abbe_image_set_attribute(image, "colorInteropID", "lin_ap0_scene", error);
+  return abbe_image_set_attribute(image, ABBE_EXR_ID_NAME, "lin_ap0_scene", error);
 }

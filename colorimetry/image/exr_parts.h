@@ -6,11 +6,15 @@
 #include "colorimetry/image/image.h"
 
 #include <openexr.h>
+#include <stdbool.h>
 
 /* The texts that are the file's own: whether it is in scan lines or tiles, and what a stored 1
  * stands for. */
 #define ABBE_EXR_STORAGE_NAME "type"
 #define ABBE_EXR_UNIT_NAME "abbe:stored_unit"
+
+/* What the numbers of R, G and B are, and "data" of a part that has no colours. */
+#define ABBE_EXR_ID_NAME "colorInteropID"
 
 /* What a context reads from, and the first thing that the library complained of. */
 typedef struct abbe_exr_stream {
@@ -46,10 +50,23 @@ abbe_result abbe_exr_fail_open(const abbe_exr_stream *s, exr_result_t rv, abbe_e
 abbe_result abbe_exr_layout_find(exr_context_t context, const abbe_exr_stream *s,
                                  abbe_exr_layout *out, abbe_error *error);
 
+/* Whether the part can be read and held, of a file of which so many channels are read. Errors of
+ * abbe_exr_read. */
+abbe_result abbe_exr_check_layout(const abbe_exr_stream *s, const abbe_exr_layout *l, int channels,
+                                  abbe_error *error);
+
+/* The first part besides that is marked as data, of the same windows in the same chunks and with
+ * channels of other names: what is no colour of the same picture. False: there is none. */
+bool abbe_exr_find_data(exr_context_t context, const abbe_exr_layout *picture,
+                        abbe_exr_layout *out);
+
 /* Chromaticities and texts of a part's header, and the wavelengths that channels are called by.
- * *unit: of what is stored; it stays what it is where nothing is said. ABBE_PARSE for a unit or a
- * wavelength that is none, ABBE_UNSUPPORTED for too many texts. */
+ * ABBE_PARSE for a wavelength that is none, ABBE_UNSUPPORTED for too many texts. */
 abbe_result abbe_exr_attributes_read(exr_context_t context, int part, const abbe_exr_stream *s,
-                                     abbe_image *image, double *unit, abbe_error *error);
+                                     abbe_image *image, abbe_error *error);
+
+/* What a stored 1 of the part stands for. ABBE_PARSE for a unit that is none. */
+abbe_result abbe_exr_unit_read(exr_context_t context, int part, const abbe_exr_stream *s,
+                               double *unit, abbe_error *error);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "base/number.h"
+#include "colorimetry/image/picture_space.h"
 
 #include <errno.h>
 #include <math.h>
@@ -44,6 +45,23 @@ static int64_t write_at(exr_const_context_t context, void *user, const void *buf
   return (int64_t)size;
 }
 
+/* The parts of a file: what is seen; and where R, G and B have an ID, which would be that of all
+ * layers beside them, a part for those that are no colours, as [ColorInterop2026] has it. */
+enum { PICTURE, DATA, PARTS };
+
+static bool is_data(const char *channel) {
+  static const char *const layers[] = {"stderr.", "covariance.", "normal.", "depth."};
+  for (size_t i = 0; i < sizeof layers / sizeof *layers; i++)
+    if (strncmp(channel, layers[i], strlen(layers[i])) == 0) return true;
+  return false;
+}
+
+static bool has_data(const abbe_image *image) {
+  for (size_t i = 0; i < image->channels; i++)
+    if (is_data(image->channel[i])) return true;
+  return false;
+}
+
 static exr_result_t write_chromaticities(exr_context_t context, const double xy[8]) {
   bool stated = false;
   for (int i = 0; i < 8; i++) stated = stated || xy[i] != 0;
@@ -59,27 +77,43 @@ typedef struct storage {
   double unit;
 } storage;
 
-static exr_result_t write_unit(exr_context_t context, double unit) {
+static exr_result_t write_unit(exr_context_t context, int part, double unit) {
   char text[32];
   if (unit == 1) return EXR_ERR_SUCCESS;
   abbe_number_format(text, sizeof text, "%.17g", unit);
-  return exr_attr_set_string(context, 0, ABBE_EXR_UNIT_NAME, text);
+  return exr_attr_set_string(context, part, ABBE_EXR_UNIT_NAME, text);
 }
 
-static exr_result_t write_header(exr_context_t context, const abbe_image *image, storage as) {
-  int part = 0;
+/* *parts: how many the file has. */
+static exr_result_t add_parts(exr_context_t context, const abbe_image *image, storage as,
+                              int *parts) {
+  static const char *const names[PARTS] = {"picture", "data"};
+  const char *id = abbe_picture_space_id(image);
+  *parts = id != NULL && has_data(image) ? PARTS : 1;
   exr_result_t rv = exr_set_longname_support(context, 1);
-  if (rv == 0) rv = exr_add_part(context, NULL, EXR_STORAGE_SCANLINE, &part);
-  if (rv == 0)
-    rv = exr_initialize_required_attr_simple(context, 0, (int32_t)image->width,
-                                             (int32_t)image->height, EXR_COMPRESSION_ZIP);
+  for (int part = 0; rv == 0 && part < *parts; part++) {
+    int added = 0;
+    rv = exr_add_part(context, *parts > 1 ? names[part] : NULL, EXR_STORAGE_SCANLINE, &added);
+    if (rv == 0)
+      rv = exr_initialize_required_attr_simple(context, part, (int32_t)image->width,
+                                               (int32_t)image->height, EXR_COMPRESSION_ZIP);
+    if (rv == 0) rv = write_unit(context, part, as.unit);
+    const char *own = part == DATA ? "data" : id;
+    if (rv == 0 && own != NULL) rv = exr_attr_set_string(context, part, ABBE_EXR_ID_NAME, own);
+  }
   for (size_t i = 0; rv == 0 && i < image->channels; i++)
-    rv =
-        exr_add_channel(context, 0, image->channel[i], as.type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    rv = exr_add_channel(context, *parts > 1 && is_data(image->channel[i]) ? DATA : PICTURE,
+                         image->channel[i], as.type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+  return rv;
+}
+
+static exr_result_t write_header(exr_context_t context, const abbe_image *image, storage as,
+                                 int *parts) {
+  exr_result_t rv = add_parts(context, image, as, parts);
   if (rv == 0) rv = write_chromaticities(context, image->xy);
-  if (rv == 0) rv = write_unit(context, as.unit);
   for (size_t i = 0; rv == 0 && i < image->attribute_count; i++)
-    rv = exr_attr_set_string(context, 0, image->attribute[i].name, image->attribute[i].text);
+    if (strcmp(image->attribute[i].name, ABBE_EXR_ID_NAME) != 0) /* is of what was read */
+      rv = exr_attr_set_string(context, 0, image->attribute[i].name, image->attribute[i].text);
   return rv == 0 ? exr_write_header(context) : rv;
 }
 
@@ -113,9 +147,9 @@ static exr_result_t compress(exr_encode_pipeline_t *pipe) {
   return rv;
 }
 
-static exr_result_t choose_routines(exr_context_t context, codec *library,
+static exr_result_t choose_routines(exr_context_t context, int part, codec *library,
                                     exr_encode_pipeline_t *pipe) {
-  exr_result_t rv = exr_encoding_choose_default_routines(context, 0, pipe);
+  exr_result_t rv = exr_encoding_choose_default_routines(context, part, pipe);
   library->compress = pipe->compress_fn;
   if (library->compress == NULL) return rv;
   pipe->encoding_user_data = library;
@@ -123,22 +157,23 @@ static exr_result_t choose_routines(exr_context_t context, codec *library,
   return rv;
 }
 
-static exr_result_t write_chunks(exr_context_t context, const abbe_image *image,
-                                 exr_encode_pipeline_t *pipe) {
+static exr_result_t write_chunks(exr_context_t context, int part, const abbe_image *image) {
   int32_t lines = 0;
   codec library = {0};
-  exr_result_t rv = exr_get_scanlines_per_chunk(context, 0, &lines);
+  exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
+  exr_result_t rv = exr_get_scanlines_per_chunk(context, part, &lines);
   for (size_t y = 0; rv == 0 && y < image->height; y += (size_t)lines) {
     exr_chunk_info_t chunk = {0};
-    rv = exr_write_scanline_chunk_info(context, 0, (int)y, &chunk);
+    rv = exr_write_scanline_chunk_info(context, part, (int)y, &chunk);
     if (rv != 0) break;
-    rv = y == 0 ? exr_encoding_initialize(context, 0, &chunk, pipe)
-                : exr_encoding_update(context, 0, &chunk, pipe);
-    if (rv == 0 && !point_channels(pipe->channels, pipe->channel_count, image, y))
+    rv = y == 0 ? exr_encoding_initialize(context, part, &chunk, &pipe)
+                : exr_encoding_update(context, part, &chunk, &pipe);
+    if (rv == 0 && !point_channels(pipe.channels, pipe.channel_count, image, y))
       rv = EXR_ERR_UNKNOWN;
-    if (rv == 0 && y == 0) rv = choose_routines(context, &library, pipe);
-    if (rv == 0) rv = exr_encoding_run(context, 0, pipe);
+    if (rv == 0 && y == 0) rv = choose_routines(context, part, &library, &pipe);
+    if (rv == 0) rv = exr_encoding_run(context, part, &pipe);
   }
+  exr_encoding_destroy(context, &pipe);
   return rv;
 }
 
@@ -150,10 +185,9 @@ static exr_result_t write_image(target *s, const abbe_image *image, storage as) 
   exr_context_t context = NULL;
   exr_result_t rv = exr_start_write(&context, s->path, EXR_WRITE_FILE_DIRECTLY, &setup);
   if (rv != 0) return rv;
-  exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
-  rv = write_header(context, image, as);
-  if (rv == 0) rv = write_chunks(context, image, &pipe);
-  exr_encoding_destroy(context, &pipe);
+  int parts = 0;
+  rv = write_header(context, image, as, &parts);
+  for (int part = 0; rv == 0 && part < parts; part++) rv = write_chunks(context, part, image);
   exr_result_t finished = exr_finish(&context); /* writes the table of chunks */
   return rv == 0 ? finished : rv;
 }

@@ -48,6 +48,24 @@ static const double *interop_xy(const char *id) {
   return NULL;
 }
 
+static bool are_near(const double a[8], const double b[8]) {
+  for (int i = 0; i < 8; i++)
+    if (!(fabs(a[i] - b[i]) <= 1e-3)) return false;
+  return true;
+}
+
+const char *abbe_picture_space_id(const abbe_image *image) {
+  static const char *const rgb[3] = {"R", "G", "B"};
+  abbe_observer observer;
+  if (find_observer(image, "", &observer, NULL) != ABBE_OK || observer != ABBE_OBSERVER_CIE_1931)
+    return NULL;
+  for (int k = 0; k < 3; k++)
+    if (abbe_image_find_channel(image, rgb[k]) == (size_t)-1) return NULL;
+  for (size_t i = 0; i < INTEROP; i++)
+    if (are_near(image->xy, interop[i].xy)) return interop[i].id;
+  return NULL;
+}
+
 /* The file's colorInteropID as chromaticities; *out is NULL where it has none, or "unknown". */
 static abbe_result find_interop(const abbe_image *image, const char *name, const double **out,
                                 abbe_error *error) {
@@ -64,13 +82,11 @@ static abbe_result find_interop(const abbe_image *image, const char *name, const
                           "%s: its colorInteropID '%.60s' is no linear space that is known, such "
                           "as lin_ap1_scene or lin_rec709_scene",
                           name, id);
-  for (int i = 0; i < 8 && is_stated(image->xy); i++)
-    if (!(fabs(image->xy[i] - (*out)[i]) <= 1e-3))
-      return abbe_error_set(error, ABBE_COLOUR,
-                            "%s: its colorInteropID '%.60s' and its chromaticities contradict each "
-                            "other",
-                            name, id);
-  return ABBE_OK;
+  if (!is_stated(image->xy) || are_near(image->xy, *out)) return ABBE_OK;
+  return abbe_error_set(error, ABBE_COLOUR,
+                        "%s: its colorInteropID '%.60s' and its chromaticities contradict each "
+                        "other",
+                        name, id);
 }
 
 abbe_result abbe_picture_space_find(const abbe_image *image, bool is_xyz, const char *name,

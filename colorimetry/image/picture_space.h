@@ -23,6 +23,10 @@ typedef struct abbe_picture_space {
 abbe_result abbe_picture_space_find(const abbe_image *image, bool is_xyz, const char *name,
                                     abbe_picture_space *out, abbe_error *error);
 
+/* The colorInteropID of R, G and B: of those of the standard observer in a space that has one; NULL
+ * of all else, and of spectra and X, Y, Z. */
+const char *abbe_picture_space_id(const abbe_image *image);
+
 /* Numbers as colours, for false-colour pictures and their scale bars.
  *
  * Two maps: one for amounts, from black to white with lightness rising throughout, so that it also

@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
+#include "colorimetry/rgb_space.h"
 
 #include <openexr.h>
 #include <unistd.h>
@@ -351,6 +352,69 @@ TEST(what_abbe_writes) {
         OK((half ? abbe_exr_write_half : abbe_exr_write)(path, &image, &error));
         compare(&image, names, (int)channels, "written by Abbe");
       }
+}
+
+/* What is no colour is in a part of its own where R, G and B have an ID; both are read as one
+ * picture, in a unit of each part. */
+TEST(data_beside_colours) {
+  static const char *const mixed[] = {"stderr.R", "R", "normal.X", "G", "S0.550,000000nm", "B"};
+  static const char *const colours[] = {"B", "G", "R", "S0.550,000000nm"};
+  static const char *const data[] = {"normal.X", "stderr.R"};
+  for (int s = 0; s < SIZES; s++)
+    for (int half = 0; half < 2; half++) {
+      MADE(abbe_image, image,
+           abbe_image_make((size_t)sizes[s][0], (size_t)sizes[s][1], 6, mixed, &image, &error));
+      abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_ACESCG, image.xy);
+      for (size_t i = 0; i < image.width * image.height * 6; i++)
+        image.data[i] = (float)(i % 1000) * 0.25f + 1;
+      OK((half ? abbe_exr_write_half : abbe_exr_write)(path, &image, &error));
+      compare_part(&image, 0, colours, 4, "colours");
+      compare_part(&image, 1, data, 2, "data");
+      MADE(abbe_image, back, abbe_exr_read(path, &back, &error));
+      compare_part(&back, 0, colours, 4, "colours that are read");
+      compare_part(&back, 1, data, 2, "data that are read");
+      assert_int_equal(back.channels, 6);
+      assert_string_equal(back.part, "");
+      assert_string_equal(abbe_image_attribute_text(&back, "colorInteropID"), "lin_ap1_scene");
+      MADE(abbe_image, alone, abbe_exr_read(printed("%s#data", path), &alone, &error));
+      assert_int_equal(alone.channels, 2);
+      assert_string_equal(abbe_image_attribute_text(&alone, "colorInteropID"), "data");
+      for (size_t i = 0; i < image.width * image.height * 6; i++) image.data[i] *= 0x1p-30f;
+      OK(abbe_exr_write_half(path, &image, &error));
+      MADE(abbe_image, small, abbe_exr_read(path, &small, &error));
+      for (size_t i = 0; i < image.width * image.height * 6; i++)
+        assert_true(small.data[i] == 0x1p-30f * back.data[i]);
+    }
+}
+
+/* An ID is of R, G, B by the standard observer, in a space that has one; nothing else gets one, and
+ * none that was read is handed on. */
+TEST(what_gets_an_id) {
+  static const double p3[8] = {0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.329};
+  static const double none[8] = {0}, other[8] = {0.7, 0.3, 0.2, 0.7, 0.1, 0.1, 0.3127, 0.329};
+  static const struct {
+    const char *channel[3], *observer, *id;
+    const double *xy;
+  } rows[] = {{{"R", "G", "B"}, NULL, "lin_p3d65_scene", p3},
+              {{"R", "G", "B"}, "CIE 1931, 2 degrees", "lin_p3d65_scene", p3},
+              {{"R", "G", "B"}, "CIE 1964, 10 degrees", NULL, p3},
+              {{"R", "G", "B"}, NULL, NULL, none},
+              {{"R", "G", "B"}, NULL, NULL, other},
+              {{"X", "Y", "Z"}, NULL, NULL, p3},
+              {{"S0.500,000000nm", "S0.550,000000nm", "stderr.R"}, NULL, NULL, p3}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    MADE(abbe_image, image, abbe_image_make(2, 1, 3, rows[i].channel, &image, &error));
+    memcpy(image.xy, rows[i].xy, sizeof image.xy);
+    OK(abbe_image_set_attribute(&image, "colorInteropID", "lin_ap0_scene", &error));
+    if (rows[i].observer != NULL)
+      OK(abbe_image_set_attribute(&image, "abbe:observer", rows[i].observer, &error));
+    OK(abbe_exr_write(path, &image, &error));
+    MADE(abbe_image, back, abbe_exr_read(path, &back, &error));
+    const char *id = abbe_image_attribute_text(&back, "colorInteropID");
+    if ((id == NULL) != (rows[i].id == NULL) || (id != NULL && strcmp(id, rows[i].id) != 0))
+      fail_msg("row %zu: %s, not %s", i, id != NULL ? id : "none",
+               rows[i].id != NULL ? rows[i].id : "none");
+  }
 }
 
 /* A float or a half: of all bits even, but no NaN and no infinity. */
