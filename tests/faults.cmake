@@ -3,14 +3,18 @@
 # Every allocation of Abbe's own objects, and what allocates for them (faults/memory.h).
 add_library(faults_memory OBJECT faults/memory.c)
 target_link_libraries(faults_memory PUBLIC abbe_build PkgConfig::GSL PkgConfig::SQLITE PkgConfig::YAML
-  PNG::PNG)
+  PkgConfig::EXPAT)
 foreach(name malloc calloc realloc aligned_alloc strdup strndup realpath fopen fdopen open_memstream
     newlocale yaml_parser_initialize yaml_parser_parse sqlite3_open_v2 sqlite3_prepare_v2
-    sqlite3_step sqlite3_serialize png_create_write_struct
-    png_create_read_struct png_create_info_struct gsl_vector_alloc gsl_matrix_alloc gsl_interp_alloc
-    gsl_integration_workspace_alloc gsl_multifit_linear_alloc gsl_multifit_nlinear_alloc)
+    sqlite3_step sqlite3_serialize gsl_vector_alloc gsl_matrix_alloc gsl_interp_alloc
+    gsl_integration_workspace_alloc gsl_multifit_linear_alloc gsl_multifit_nlinear_alloc
+    XML_ParserCreate)
   target_link_options(faults_memory INTERFACE LINKER:--wrap=${name})
 endforeach()
+
+# Feeds fuzz targets with allocations failing.
+add_library(faults_starve OBJECT EXCLUDE_FROM_ALL faults/starve.c)
+target_link_libraries(faults_starve PUBLIC abbe_build)
 
 abbe_test(no_memory_tables cpu WRAPPED faults_memory abbe_spectral abbe_base)
 abbe_test(no_memory_scenes cpu WRAPPED faults_memory abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)

@@ -195,7 +195,8 @@ static exr_result_t read_chunk(exr_context_t context, source *from, const exr_ch
   to->part = from;
   from->pipe.decoding_user_data = to;
   if (rv == 0 && !is_whole(&from->pipe)) rv = EXR_ERR_CORRUPT_CHUNK;
-  return rv == 0 ? exr_decoding_run(context, from->layout.part, &from->pipe) : rv;
+  if (rv == 0) rv = exr_decoding_run(context, from->layout.part, &from->pipe);
+  return abbe_exr_starved() ? EXR_ERR_OUT_OF_MEMORY : rv;
 }
 
 static bool is_shown(const place *to, int64_t width, int64_t height) {
@@ -336,7 +337,9 @@ static exr_result_t start(abbe_exr_reader *r) {
   setup.max_image_width = setup.max_image_height = ABBE_IMAGE_MAX_SIDE;
   setup.max_tile_width = setup.max_tile_height = ABBE_IMAGE_MAX_SIDE;
   setup.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
-  return exr_start_read(&r->context, r->path, &setup);
+  abbe_exr_allocate_by(&setup);
+  const exr_result_t rv = exr_start_read(&r->context, r->path, &setup);
+  return abbe_exr_starved() ? EXR_ERR_OUT_OF_MEMORY : rv;
 }
 
 /* A part that is asked for by its name comes alone. */

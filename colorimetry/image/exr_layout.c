@@ -10,6 +10,26 @@
 #include <string.h>
 #include <unistd.h>
 
+static _Thread_local bool starved;
+
+static void *allocate(size_t size) {
+  void *memory = malloc(size);
+  if (memory == NULL) starved = true;
+  return memory;
+}
+
+void abbe_exr_allocate_by(exr_context_initializer_t *setup) {
+  setup->alloc_fn = allocate;
+  setup->free_fn = free;
+  starved = false;
+}
+
+bool abbe_exr_starved(void) {
+  const bool was = starved;
+  starved = false;
+  return was;
+}
+
 int64_t abbe_exr_width(exr_attr_box2i_t window) {
   return (int64_t)window.max.x - window.min.x + 1;
 }
@@ -61,15 +81,15 @@ static codec codec_of(int number) {
 /* The codec's number in the part's header; -1 where none is found. */
 static int find_codec(const abbe_exr_stream *s, int part) {
   static const char key[] = "compression\0compression\0\1\0\0"; /* and the size's last byte, 0 */
-  enum { HEAD = 1 << 17 }; /* a thousand channels and the attributes before */
-  unsigned char *head = malloc(HEAD);
-  const ssize_t size = head == NULL ? 0 : pread(s->fd, head, HEAD, 0);
-  int found = -1;
-  for (ssize_t i = 0; part >= 0 && i + (ssize_t)sizeof key < size; i++)
-    if (memcmp(head + i, key, sizeof key) == 0 && part-- == 0)
-      found = head[i + (ssize_t)sizeof key];
-  free(head);
-  return found;
+  enum { HEAD = 1 << 17, STEP = 1 << 12 }; /* a thousand channels and the attributes before */
+  unsigned char head[STEP + sizeof key + 1];
+  for (off_t from = 0; from < HEAD; from += STEP) {
+    const ssize_t size = pread(s->fd, head, sizeof head, from);
+    for (ssize_t i = 0; i < STEP && i + (ssize_t)sizeof key < size; i++)
+      if (memcmp(head + i, key, sizeof key) == 0 && part-- == 0)
+        return head[i + (ssize_t)sizeof key];
+  }
+  return -1;
 }
 
 /* The library may take a codec that is younger than itself for ZIP. */
@@ -108,6 +128,7 @@ static const char *other_kind(const abbe_exr_stream *s) {
 
 abbe_result abbe_exr_fail_open(const abbe_exr_stream *s, exr_result_t rv, abbe_error *error) {
   int number = 0;
+  if (rv == EXR_ERR_OUT_OF_MEMORY) return abbe_exr_fail(s, rv, error);
   const char *other = s->io_errno == 0 ? other_kind(s) : NULL;
   if (other != NULL)
     return abbe_error_set(error, ABBE_PARSE, "%s: it is %s file and not OpenEXR", s->path, other);

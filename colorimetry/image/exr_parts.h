@@ -36,6 +36,11 @@ typedef struct abbe_exr_layout {
   const exr_attr_chlist_t *channels;
 } abbe_exr_layout;
 
+/* Has the library allocate so that a thread knows whether it lacked memory: it does not always
+ * tell, and goes on with other pixels. Asking forgets. */
+void abbe_exr_allocate_by(exr_context_initializer_t *setup);
+bool abbe_exr_starved(void);
+
 int64_t abbe_exr_width(exr_attr_box2i_t window);
 int64_t abbe_exr_height(exr_attr_box2i_t window);
 

@@ -182,13 +182,15 @@ static exr_result_t write_image(target *s, const abbe_image *image, storage as) 
   setup.error_handler_fn = ignore_error;
   setup.user_data = s;
   setup.write_fn = write_at;
+  abbe_exr_allocate_by(&setup);
   exr_context_t context = NULL;
   exr_result_t rv = exr_start_write(&context, s->path, EXR_WRITE_FILE_DIRECTLY, &setup);
-  if (rv != 0) return rv;
+  if (rv != 0) return abbe_exr_starved() ? EXR_ERR_OUT_OF_MEMORY : rv;
   int parts = 0;
   rv = write_header(context, image, as, &parts);
   for (int part = 0; rv == 0 && part < parts; part++) rv = write_chunks(context, part, image);
   exr_result_t finished = exr_finish(&context); /* writes the table of chunks */
+  if (abbe_exr_starved()) return EXR_ERR_OUT_OF_MEMORY;
   return rv == 0 ? finished : rv;
 }
 

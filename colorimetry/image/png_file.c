@@ -41,6 +41,19 @@ static void on_warning(png_structp png, png_const_charp message) {
   (void)png, (void)message;
 }
 
+/* libpng leaves out what there was no memory for, as a profile, and goes on. */
+static png_voidp allocate(png_structp png, png_alloc_size_t size) {
+  job *j = png_get_mem_ptr(png);
+  void *memory = malloc(size);
+  if (memory == NULL) j->no_memory = true;
+  return memory;
+}
+
+static void give_back(png_structp png, png_voidp memory) {
+  (void)png;
+  free(memory);
+}
+
 static void write_bytes(png_structp png, png_bytep bytes, size_t size) {
   job *j = png_get_io_ptr(png);
   if (fwrite(bytes, 1, size, j->file) == size) return;
@@ -132,11 +145,12 @@ static bool write_rows(job *j, const abbe_image *image) {
 }
 
 static bool write_image(job *j, const abbe_image *image) {
-  j->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, j, on_error, on_warning);
+  j->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, j, on_error, on_warning, j, allocate,
+                                     give_back);
   j->info = j->png == NULL ? NULL : png_create_info_struct(j->png);
   j->rows = malloc(image->width * (size_t)j->samples * (size_t)(j->bits / 8));
   j->no_memory = j->info == NULL || j->rows == NULL;
-  bool written = !j->no_memory && write_rows(j, image);
+  bool written = !j->no_memory && write_rows(j, image) && !j->no_memory;
   png_destroy_write_struct(&j->png, &j->info);
   free(j->rows);
   return written;
@@ -170,7 +184,7 @@ abbe_result abbe_png_write(const char *path, const abbe_image *image, int bits, 
   if (result != ABBE_OK) return result;
   return abbe_error_set(error, j.no_memory ? ABBE_NO_MEMORY : ABBE_IO,
                         "%s: could not be written and is as it was: %s", path,
-                        j.no_memory ? "there is no memory for a row" : j.message);
+                        j.no_memory ? "there is no memory for it" : j.message);
 }
 
 /* Reading */
@@ -216,7 +230,7 @@ static bool read_rows(job *j) {
   size_t stride = (size_t)j->width * 3 * (size_t)(j->bits / 8);
   j->rows = malloc(stride * j->height);
   j->row = malloc(j->height * sizeof *j->row);
-  j->no_memory = j->rows == NULL || j->row == NULL;
+  j->no_memory = j->no_memory || j->rows == NULL || j->row == NULL;
   if (j->no_memory) return false;
   for (size_t y = 0; y < j->height; y++) j->row[y] = j->rows + y * stride;
   if (setjmp(png_jmpbuf(j->png))) return false;
@@ -283,7 +297,8 @@ static abbe_result become_srgb(const job *j, abbe_image *image, abbe_error *erro
 
 static abbe_result read_image(job *j, double file_size, abbe_image *out, abbe_error *error) {
   static const char *const names[] = {"R", "G", "B"};
-  j->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, j, on_error, on_warning);
+  j->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, j, on_error, on_warning, j, allocate,
+                                    give_back);
   j->info = j->png == NULL ? NULL : png_create_info_struct(j->png);
   j->no_memory = j->info == NULL;
   abbe_result result = ABBE_OK;
@@ -291,7 +306,7 @@ static abbe_result read_image(job *j, double file_size, abbe_image *out, abbe_er
   if (read)
     result = abbe_image_check_expansion(j->path, j->width, j->height, 3, (size_t)file_size,
                                         ABBE_PNG_FREE_BYTES, error);
-  if (result == ABBE_OK && !(read && read_rows(j))) {
+  if (result == ABBE_OK && !(read && read_rows(j) && !j->no_memory)) {
     abbe_result code = j->no_memory ? ABBE_NO_MEMORY : j->io_failed ? ABBE_IO : ABBE_PARSE;
     result = abbe_error_set(error, code, "%s: %s%s", j->path,
                             j->no_memory ? "there is no memory for its pixels"

@@ -153,9 +153,12 @@ static abbe_result move_all(abbe_material_table *from, abbe_material_table *into
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: its %zu materials make more than the %d that a table holds",
                           from->path, from->count, ABBE_MATERIAL_TABLE_MAX_COUNT);
+  const size_t before = into->count;
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < from->count && result == ABBE_OK; i++)
     result = abbe_material_table_append(into, &from->material[i], error);
+  while (result != ABBE_OK && into->count > before)
+    abbe_material_free(&into->material[--into->count]);
   if (result == ABBE_OK && into->count == from->count && into->description == NULL) {
     into->description = from->description;
     from->description = NULL;

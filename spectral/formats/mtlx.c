@@ -112,10 +112,10 @@ static void add_link(reading *r, const char *shader) {
 }
 
 /* The shader takes the name where a table could hold it; else it keeps its own. */
-static void take_material_name(const reading *r, abbe_material *m, const char *name) {
+static abbe_result take_material_name(const reading *r, abbe_material *m, const char *name) {
   char *own = m->name, *other = strdup(name);
   abbe_error why = {0};
-  if (other == NULL) return;
+  if (other == NULL) return abbe_error_set(r->error, ABBE_NO_MEMORY, "%s: no memory", r->path);
   for (size_t i = 0; i < r->out->count; i++)
     if (strcasecmp(r->out->material[i].name, other) == 0)
       snprintf(why.text, sizeof why.text, "another has that name");
@@ -123,23 +123,26 @@ static void take_material_name(const reading *r, abbe_material *m, const char *n
   if (why.text[0] == '\0') abbe_material_check(m, &why);
   if (why.text[0] == '\0') {
     free(own);
-    return;
+    return ABBE_OK;
   }
   m->name = own;
   free(other);
   abbe_report_add(r->report, ABBE_NOTE_CHANGED, m->line, own,
                   "its surfacematerial's name '%.60s' is not taken: %.200s", name, why.text);
+  return ABBE_OK;
 }
 
 /* People name the surfacematerial; what it shows is often named after its kind. */
-static void rename_all(const reading *r) {
+static abbe_result rename_all(const reading *r) {
   for (size_t i = 0; i < r->out->count; i++)
     for (size_t k = 0; k < r->links; k++) {
       abbe_material *m = &r->out->material[i];
       if (strcmp(r->link[k].shader, m->name) != 0) continue;
-      if (strcmp(r->link[k].material, m->name) != 0) take_material_name(r, m, r->link[k].material);
+      if (strcmp(r->link[k].material, m->name) != 0)
+        ABBE_TRY(take_material_name(r, m, r->link[k].material));
       break;
     }
+  return ABBE_OK;
 }
 
 static void begin(void *user, const char *element, const char **attributes) {
@@ -197,6 +200,14 @@ static abbe_result absorb(const reading *r, abbe_material *m, abbe_error *error)
   return abbe_absorption_spectrum_of_colour(colour, r->distance, &m->attenuation, error);
 }
 
+/* A material that cannot be made is skipped; the file is not, but where memory fails. */
+static abbe_result skip(reading *r, abbe_result result, const abbe_error *why) {
+  if (result == ABBE_NO_MEMORY)
+    return abbe_error_set(r->error, result, "%s: %s", r->path, why->text);
+  abbe_report_add(r->report, ABBE_NOTE_SKIPPED, r->line, r->name, "%s", why->text);
+  return ABBE_OK;
+}
+
 static abbe_result take(reading *r) {
   const abbe_given given = {.kind = ABBE_GIVEN_GLTF, .first = r->ior, .second = dispersion_of(r)};
   abbe_material m = {.line = r->line, .min_nm = 380, .max_nm = 780, .temperature_c = NAN};
@@ -208,10 +219,8 @@ static abbe_result take(reading *r) {
                                  : "no light goes through it: its transmission is 0");
     return ABBE_OK;
   }
-  if (abbe_convert_make(&given, ABBE_FIT_CAUCHY, &m.dispersion, &why) != ABBE_OK) {
-    abbe_report_add(r->report, ABBE_NOTE_SKIPPED, r->line, r->name, "%s", why.text);
-    return ABBE_OK;
-  }
+  abbe_result result = abbe_convert_make(&given, ABBE_FIT_CAUCHY, &m.dispersion, &why);
+  if (result != ABBE_OK) return skip(r, result, &why);
   snprintf(source, sizeof source, "%.200s, %s of MaterialX", r->path, r->model->element);
   m.name = strdup(r->name);
   m.source = strdup(source);
@@ -219,14 +228,10 @@ static abbe_result take(reading *r) {
     abbe_material_free(&m);
     return abbe_error_set(r->error, ABBE_NO_MEMORY, "%s: no memory", r->path);
   }
-  abbe_result result = absorb(r, &m, &why);
+  result = absorb(r, &m, &why);
   if (result == ABBE_OK) result = abbe_material_check(&m, &why);
-  if (result == ABBE_OK) {
-    result = abbe_material_table_append(r->out, &m, r->error);
-  } else if (result != ABBE_NO_MEMORY) {
-    abbe_report_add(r->report, ABBE_NOTE_SKIPPED, r->line, r->name, "%s", why.text);
-    result = ABBE_OK;
-  }
+  result =
+      result == ABBE_OK ? abbe_material_table_append(r->out, &m, r->error) : skip(r, result, &why);
   abbe_material_free(&m);
   return result;
 }
@@ -249,11 +254,13 @@ abbe_result abbe_mtlx_parse(const char *text, size_t size, const char *path,
   if (r.parser == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", path);
   XML_SetUserData(r.parser, &r);
   XML_SetElementHandler(r.parser, begin, end);
-  if (XML_Parse(r.parser, text, (int)size, XML_TRUE) != XML_STATUS_OK && r.result == ABBE_OK)
-    r.result = abbe_error_set(error, ABBE_PARSE, "%s:%zu: %s", path, abbe_xml_line(r.parser),
-                              XML_ErrorString(XML_GetErrorCode(r.parser)));
+  if (XML_Parse(r.parser, text, (int)size, XML_TRUE) != XML_STATUS_OK && r.result == ABBE_OK) {
+    const enum XML_Error code = XML_GetErrorCode(r.parser);
+    r.result = abbe_error_set(error, code == XML_ERROR_NO_MEMORY ? ABBE_NO_MEMORY : ABBE_PARSE,
+                              "%s:%zu: %s", path, abbe_xml_line(r.parser), XML_ErrorString(code));
+  }
   XML_ParserFree(r.parser);
-  if (r.result == ABBE_OK) rename_all(&r);
+  if (r.result == ABBE_OK) r.result = rename_all(&r);
   free(r.link);
   if (r.result == ABBE_OK && r.found == 0)
     r.result =

@@ -2,13 +2,13 @@
 #include "tests/faults/memory.h"
 
 #include <errno.h>
+#include <expat.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
 #include <gsl/gsl_interp.h>
 #include <gsl/gsl_multifit.h>
 #include <gsl/gsl_multifit_nlinear.h>
 #include <locale.h>
-#include <png.h>
 #include <sqlite3.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -100,14 +100,6 @@ WRAP(unsigned char *, sqlite3_serialize,
      (sqlite3 * db, const char *schema, sqlite3_int64 *size, unsigned flags),
      (db, schema, size, flags), NULL)
 
-WRAP(png_structp, png_create_write_struct,
-     (png_const_charp version, png_voidp user, png_error_ptr error, png_error_ptr warn),
-     (version, user, error, warn), NULL)
-WRAP(png_structp, png_create_read_struct,
-     (png_const_charp version, png_voidp user, png_error_ptr error, png_error_ptr warn),
-     (version, user, error, warn), NULL)
-WRAP(png_infop, png_create_info_struct, (png_const_structrp png), (png), NULL)
-
 WRAP(gsl_vector *, gsl_vector_alloc, (size_t n), (n), NULL)
 WRAP(gsl_matrix *, gsl_matrix_alloc, (size_t n, size_t m), (n, m), NULL)
 WRAP(gsl_interp *, gsl_interp_alloc, (const gsl_interp_type *type, size_t n), (type, n), NULL)
@@ -117,3 +109,20 @@ WRAP(gsl_multifit_nlinear_workspace *, gsl_multifit_nlinear_alloc,
      (const gsl_multifit_nlinear_type *type, const gsl_multifit_nlinear_parameters *parameters,
       size_t n, size_t p),
      (type, parameters, n, p), NULL)
+
+/* ---- expat takes its caller's malloc ---- */
+
+static void *inner_malloc(size_t size) {
+  return fails("malloc within a library", __builtin_return_address(0)) ? NULL : __real_malloc(size);
+}
+
+static void *inner_realloc(void *old, size_t size) {
+  return fails("realloc within a library", __builtin_return_address(0)) ? NULL
+                                                                        : __real_realloc(old, size);
+}
+
+XML_Parser __wrap_XML_ParserCreate(const XML_Char *encoding);
+XML_Parser __wrap_XML_ParserCreate(const XML_Char *encoding) {
+  static const XML_Memory_Handling_Suite suite = {inner_malloc, inner_realloc, free};
+  return XML_ParserCreate_MM(encoding, &suite, NULL);
+}

@@ -1,9 +1,9 @@
 /* memory.h: allocations that fail when they are told to.
  *
  * A test program that links tests/faults/memory.c with the options of abbe_faults_memory has every
- * allocation of Abbe's own objects pass through here: malloc and its kin, and the functions of
- * libc, libyaml, SQLite, libpng and GSL that allocate for their caller. What other libraries
- * allocate within themselves is not touched.
+ * allocation of Abbe's own objects pass through here: malloc and its kin, the functions of libc,
+ * libyaml, SQLite and GSL that allocate for their caller, and what expat, libpng and OpenEXR
+ * allocate within themselves. What other libraries allocate within themselves is not touched.
  */
 #ifndef ABBE_TESTS_FAULTS_MEMORY_H
 #define ABBE_TESTS_FAULTS_MEMORY_H

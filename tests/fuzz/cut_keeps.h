@@ -22,6 +22,7 @@ static inline void fuzz_cut_writes(const abbe_cut *cut) {
   if (to == NULL) return;
   FUZZ_PROMISE(abbe_cut_asc_write(cut, to, NULL, &error) == ABBE_OK);
   fclose(to);
+  fuzz_same(text, size);
   const abbe_result result = abbe_cut_asc_parse(text, size, "back", &back, NULL, &error);
   if (result != ABBE_OK) fprintf(stderr, "%s\n%s\n", error.text, text);
   FUZZ_PROMISE(result == ABBE_OK);
@@ -34,7 +35,7 @@ static inline void fuzz_cut_stone(const abbe_cut *cut) {
   abbe_cut_polyhedron p;
   abbe_cut_measures m;
   abbe_error error = {0};
-  if (abbe_cut_polyhedron_make(cut, 0, &p, &error) != ABBE_OK) {
+  if (FUZZED(abbe_cut_polyhedron_make(cut, 0, &p, &error), &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0' && p.vertex == NULL);
     return;
   }
@@ -49,7 +50,7 @@ static inline int fuzz_cut(fuzz_cut_reader *read, const uint8_t *data, size_t si
   enum { STONES_OF_AT_MOST = 128 }; /* more take their time */
   abbe_cut cut;
   abbe_error error = {0};
-  if (read((const char *)data, size, "fuzz", &cut, NULL, &error) != ABBE_OK) {
+  if (FUZZED(read((const char *)data, size, "fuzz", &cut, NULL, &error), &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0' && cut.facet == NULL && cut.tier == NULL);
     return 0;
   }

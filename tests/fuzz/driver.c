@@ -1,5 +1,6 @@
 /* driver.c: runs a fuzz target without libFuzzer: every file of a folder, then seeded mutations of
- * them. usage: fuzz_NAME FOLDER [RUNS [SEED]]
+ * them. usage: fuzz_NAME FOLDER [RUNS [SEED]]. Each file is also read with a share of its
+ * allocations failing in turn, with ABBE_FAULTS_ALL in the environment all of them.
  *
  * The same seed makes the same inputs. An input that takes longer than its share ends the program,
  * as does one that needs too much memory; what was fed last is left in fuzz_NAME.last. The share is
@@ -13,7 +14,7 @@
 #include <sys/resource.h>
 #include <sys/time.h>
 
-enum { MAX_FILES = 64, MAX_BYTES = 1 << 16, SECONDS_EACH = 20 };
+enum { MAX_FILES = 64, MAX_BYTES = 1 << 16, SECONDS_EACH = 20, TRIES = 100, TRIED_SECONDS = 600 };
 
 #if defined(__SANITIZE_ADDRESS__)
 enum { SANITIZED = 1 };
@@ -120,15 +121,18 @@ static void allow(int seconds) {
   setitimer(ITIMER_PROF, &(struct itimerval){.it_value.tv_sec = seconds}, NULL);
 }
 
-static void feed(void) {
+/* Returns how often allocations failed: tries is how many of them are tried for each. */
+static size_t feed(size_t tries) {
   /* a copy of its own, so that reading past the end is seen */
   uint8_t *data = malloc(fed.size + (fed.size == 0));
-  if (data == NULL) return;
+  if (data == NULL) exit(2);
   memcpy(data, fed.data, fed.size);
-  allow(SECONDS_EACH);
-  LLVMFuzzerTestOneInput(data, fed.size);
+  allow(tries > 0 ? TRIED_SECONDS : SECONDS_EACH);
+  const size_t starved = tries > 0 ? fuzz_starve(data, fed.size, tries)
+                                   : (size_t)LLVMFuzzerTestOneInput(data, fed.size);
   allow(0);
   free(data);
+  return starved;
 }
 
 static int is_named(const struct dirent *entry) {
@@ -172,16 +176,19 @@ int main(int argc, char **argv) {
   if (!SANITIZED) setrlimit(RLIMIT_AS, &(struct rlimit){1u << 30, 1u << 30});
   const int numbers[] = {SIGPROF, SIGABRT, SIGSEGV, SIGFPE, SIGBUS};
   for (int i = 0; i < (SANITIZED ? 2 : 5); i++) signal(numbers[i], end);
+  const size_t tries = getenv("ABBE_FAULTS_ALL") != NULL ? SIZE_MAX : TRIES;
+  size_t starved = 0;
   for (size_t i = 0; i < file_count; i++) {
     fed = *files[i];
-    feed();
+    starved += feed(tries);
   }
   for (unsigned long i = 0; i < runs; i++) {
     fed = *files[below(file_count)];
     for (size_t k = 1 + below(6); k > 0; k--) mutate();
-    feed();
+    feed(0);
   }
-  printf("%zu files and %lu mutations\n", file_count, runs);
+  printf("%zu files, %zu times with failing allocations, and %lu mutations\n", file_count, starved,
+         runs);
   for (size_t i = 0; i < file_count; i++) free(files[i]);
   return 0;
 }

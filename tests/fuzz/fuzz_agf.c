@@ -11,11 +11,12 @@ const char *const fuzz_words[] = {"NM ",           "GC ",
                                   "source: ",      "; source: ",
                                   "\xff\xfe",      NULL};
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   abbe_material_table table;
   abbe_report report = {0};
   abbe_error error = {0};
-  if (abbe_agf_parse((const char *)data, size, "f.agf", &table, &report, &error) == ABBE_OK)
+  if (FUZZED(abbe_agf_parse((const char *)data, size, "f.agf", &table, &report, &error), &error) ==
+      ABBE_OK)
     fuzz_keeps(&table);
   else
     FUZZ_PROMISE(error.text[0] != '\0' && table.material == NULL);

@@ -34,13 +34,14 @@ static void prepare(void) {
   edits_begin(&kept, path);
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   if (tracer == NULL) prepare();
   if (size == 0) return 0;
   edits_make(&kept, data, size);
   abbe_error error = {0};
+  const char *path = memory_file(kept.file, kept.size);
   const size_t passes = abbe_tracer_passes(tracer);
-  if (abbe_checkpoint_load(tracer, memory_file(kept.file, kept.size), &error) != ABBE_OK) {
+  if (FUZZED(abbe_checkpoint_load(tracer, path, &error), &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0' && abbe_tracer_passes(tracer) == passes);
     return 0;
   }

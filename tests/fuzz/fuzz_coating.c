@@ -31,7 +31,7 @@ static void check(const abbe_coating *coating) {
   }
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   static abbe_material_table table;
   const char *path = memory_file(data, size);
   if (table.count == 0)
@@ -41,8 +41,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     abbe_coatings *all = calloc(1, sizeof *all);
     if (all == NULL) return 0;
     all->count = 1;
-    if (abbe_coating_dat_read(path, i == 0 ? "AR" : "THICK", i == 0 ? 550 : 0, &table,
-                              &all->coating[0], &error) == ABBE_OK)
+    if (FUZZED(abbe_coating_dat_read(path, i == 0 ? "AR" : "THICK", i == 0 ? 550 : 0, &table,
+                                     &all->coating[0], &error),
+               &error) == ABBE_OK)
       check(&all->coating[0]);
     else
       FUZZ_PROMISE(error.text[0] != '\0');

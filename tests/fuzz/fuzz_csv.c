@@ -11,7 +11,8 @@ static void fuzz_light(const char *text, size_t size) {
   abbe_csv_points points;
   abbe_error error = {0};
   const abbe_csv_options light = {.quantity = ABBE_CSV_POWER};
-  abbe_result result = abbe_csv_points_parse(text, size, "f.csv", &light, &points, NULL, &error);
+  abbe_result result =
+      FUZZED(abbe_csv_points_parse(text, size, "f.csv", &light, &points, NULL, &error), &error);
   FUZZ_PROMISE(result == ABBE_OK || error.text[0] != '\0');
   FUZZ_PROMISE(result == ABBE_OK || points.power.point == NULL);
   for (size_t i = 0; i < points.power.count && result == ABBE_OK; i++) {
@@ -22,7 +23,7 @@ static void fuzz_light(const char *text, size_t size) {
   abbe_csv_points_free(&points);
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   static const abbe_import_options options[] = {
       {.format = ABBE_IMPORT_CSV, .csv = {.third = ABBE_CSV_K}},
       {.format = ABBE_IMPORT_CSV, .csv = {.third = ABBE_CSV_UNCERTAINTY, .repeats = true}},
@@ -33,8 +34,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     abbe_material_table table = {0};
     abbe_report report = {0};
     abbe_error error = {0};
-    abbe_result result =
-        abbe_import_parse((const char *)data, size, "f.csv", &options[i], &table, &report, &error);
+    abbe_result result = FUZZED(
+        abbe_import_parse((const char *)data, size, "f.csv", &options[i], &table, &report, &error),
+        &error);
     FUZZ_PROMISE(result == ABBE_OK || (error.text[0] != '\0' && table.count == 0));
     if (result == ABBE_OK) abbe_material_table_unique(&table, NULL, NULL);
     if (result == ABBE_OK) fuzz_keeps(&table);

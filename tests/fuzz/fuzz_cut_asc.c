@@ -24,6 +24,6 @@ const char *const fuzz_words[] = {"GemCad 5.0\n",
                                   "a -0 0.5 96\n",
                                   NULL};
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   return fuzz_cut(abbe_cut_asc_parse, data, size);
 }

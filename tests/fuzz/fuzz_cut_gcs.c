@@ -18,6 +18,6 @@ const char *const fuzz_words[] = {"<GemCutStudio version=\"1000\">",
                                   "nan",
                                   NULL};
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   return fuzz_cut(abbe_cut_gcs_parse, data, size);
 }

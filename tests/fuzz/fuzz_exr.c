@@ -47,19 +47,21 @@ static void comes_back(const abbe_image *image) {
   unlink(path);
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   static unsigned turn;
   abbe_image image;
   abbe_error error = {0};
-  if (abbe_exr_read(memory_file(data, size), &image, &error) != ABBE_OK) {
+  const char *path = memory_file(data, size);
+  if (FUZZED(abbe_exr_read(path, &image, &error), &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0' && image.data == NULL && image.channel == NULL);
     return 0;
   }
   FUZZ_PROMISE(image.width >= 1 && image.width <= ABBE_IMAGE_MAX_SIDE && image.height >= 1 &&
                image.height <= ABBE_IMAGE_MAX_SIDE && image.channels >= 1);
+  fuzz_same(image.data, image.width * image.height * image.channels * sizeof *image.data);
   abbe_map_layout layout, zero;
   memset(&zero, 0, sizeof zero);
-  if (abbe_map_layout_read(&image, "f.exr", &layout, &error) == ABBE_OK)
+  if (FUZZED(abbe_map_layout_read(&image, "f.exr", &layout, &error), &error) == ABBE_OK)
     FUZZ_PROMISE(abbe_map_layout_check(&layout, &error) == ABBE_OK);
   else
     FUZZ_PROMISE(error.text[0] != '\0' && memcmp(&layout, &zero, sizeof zero) == 0);

@@ -44,14 +44,15 @@ static void check(abbe_material *material) {
   fuzz_keeps(&table);
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   abbe_material material;
   abbe_error error = {0};
   char *name = NULL;
   if (size == 0) return 0;
   const char *path = link_named(memory_file(data + 1, size - 1), data[0] & 1 ? "glb" : "gltf");
   const abbe_result result =
-      abbe_gltf_material_load(path, data[0] & 2 ? "stone" : NULL, &material, &name, &error);
+      FUZZED(abbe_gltf_material_load(path, data[0] & 2 ? "stone" : NULL, &material, &name, &error),
+             &error);
   if (result == ABBE_OK) {
     check(&material);
     abbe_material_free(&material);

@@ -41,7 +41,7 @@ static int read_mesh(input *in, unsigned choices, abbe_mesh *out) {
   const size_t vertices = byte(in), faces = byte(in);
   const double scale = ldexp(1.0, (int)(int8_t)byte(in));
   abbe_error error = {0};
-  if (abbe_mesh_make(vertices, faces, (choices & 8) != 0, out, &error) != ABBE_OK) {
+  if (FUZZED(abbe_mesh_make(vertices, faces, (choices & 8) != 0, out, &error), &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0' && out->position == NULL);
     return 0;
   }
@@ -98,7 +98,7 @@ static void split(const abbe_mesh *mesh, size_t solids) {
   abbe_mesh *part = NULL;
   abbe_error error = {0};
   size_t count = 0, faces = 0;
-  if (abbe_mesh_split(mesh, &part, &count, &error) != ABBE_OK) {
+  if (FUZZED(abbe_mesh_split(mesh, &part, &count, &error), &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0' && part == NULL);
     return;
   }
@@ -118,14 +118,16 @@ static void fix(abbe_mesh *mesh, int smooth, size_t levels) {
   char *what = NULL;
   copy_mesh(mesh, &before);
   size_t solids = 0;
-  if (abbe_mesh_fix(mesh, smooth ? ABBE_NORMALS_SMOOTH : ABBE_NORMALS_AUTO, &solids, &what,
-                    &error) != ABBE_OK) {
+  if (FUZZED(abbe_mesh_fix(mesh, smooth ? ABBE_NORMALS_SMOOTH : ABBE_NORMALS_AUTO, &solids, &what,
+                           &error),
+             &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0' && what == NULL && same_mesh(mesh, &before));
     abbe_mesh_free(&before);
     return;
   }
   abbe_mesh_report r;
   FUZZ_PROMISE(abbe_mesh_check(mesh, &r, &error) == ABBE_OK);
+  fuzz_same(mesh->position, mesh->vertex_count * sizeof *mesh->position);
   FUZZ_PROMISE(r.open_edges == 0 && r.crowded_edges == 0 && r.flipped_edges == 0 && r.volume > 0);
   usable(mesh);
   split(mesh, solids);
@@ -140,17 +142,18 @@ static void fix(abbe_mesh *mesh, int smooth, size_t levels) {
   abbe_mesh flat;
   double moved = 0;
   copy_mesh(mesh, &flat);
-  if (abbe_convex_flatten(&flat, 0.02, 64, &moved, &error) == ABBE_OK)
+  if (FUZZED(abbe_convex_flatten(&flat, 0.02, 64, &moved, &error), &error) == ABBE_OK)
     FUZZ_PROMISE(isfinite(moved) && flat.face_count > 0);
   else
     FUZZ_PROMISE(error.text[0] != '\0' && same_mesh(&flat, mesh));
   abbe_mesh_free(&flat);
-  if (levels > 0 && abbe_mesh_subdivide(mesh, levels, &error) == ABBE_OK) usable(mesh);
+  if (levels > 0 && FUZZED(abbe_mesh_subdivide(mesh, levels, &error), &error) == ABBE_OK)
+    usable(mesh);
   free(what);
   abbe_mesh_free(&before);
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   input in = {data, data + size};
   const unsigned choices = byte(&in);
   abbe_mesh mesh;

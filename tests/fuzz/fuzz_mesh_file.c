@@ -49,18 +49,20 @@ static const char *link_named(const char *target, const char *kind) {
   return name;
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   static const char *const kinds[] = {"obj", "ply", "stl", "gltf", "glb"};
   abbe_mesh mesh;
   abbe_error error = {0};
   if (size == 0) return 0;
   const char *path = link_named(memory_file(data + 1, size - 1), kinds[data[0] % 5]);
-  if (abbe_mesh_load(path, data[0] & 64 ? ABBE_NORMALS_AUTO : ABBE_NORMALS_FLAT, &mesh, NULL,
-                     &error) != ABBE_OK)
+  if (FUZZED(abbe_mesh_load(path, data[0] & 64 ? ABBE_NORMALS_AUTO : ABBE_NORMALS_FLAT, &mesh, NULL,
+                            &error),
+             &error) != ABBE_OK)
     FUZZ_PROMISE(error.text[0] != '\0' && mesh.position == NULL && mesh.face == NULL);
   else
-    for (size_t f = 0; f < mesh.face_count; f++)
-      for (int k = 0; k < 3; k++) FUZZ_PROMISE(mesh.face[f][k] < mesh.vertex_count);
+    fuzz_same(mesh.position, mesh.vertex_count * sizeof *mesh.position);
+  for (size_t f = 0; f < mesh.face_count; f++)
+    for (int k = 0; k < 3; k++) FUZZ_PROMISE(mesh.face[f][k] < mesh.vertex_count);
   abbe_mesh_free(&mesh);
   unlink(path);
   return 0;

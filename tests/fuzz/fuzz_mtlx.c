@@ -20,13 +20,14 @@ const char *const fuzz_words[] = {"<materialx>",
                                   "<!DOCTYPE a [<!ENTITY b \"",
                                   NULL};
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   static const abbe_import_options options = {.format = ABBE_IMPORT_MTLX};
   abbe_material_table table = {0};
   abbe_report report = {0};
   abbe_error error = {0};
-  const abbe_result result =
-      abbe_import_parse((const char *)data, size, "f.mtlx", &options, &table, &report, &error);
+  const abbe_result result = FUZZED(
+      abbe_import_parse((const char *)data, size, "f.mtlx", &options, &table, &report, &error),
+      &error);
   FUZZ_PROMISE(result == ABBE_OK || (error.text[0] != '\0' && table.count == 0));
   if (result == ABBE_OK) abbe_material_table_unique(&table, NULL, NULL);
   if (result == ABBE_OK && table.count > 0) fuzz_keeps(&table); /* else all are skipped */

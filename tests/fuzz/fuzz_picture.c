@@ -59,18 +59,20 @@ static const char *picture_file(const uint8_t *data, size_t size) {
   return header;
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   abbe_image image;
   abbe_error error = {0};
   const char *path = picture_file(data, size);
   const bool envi = size > 4 && memcmp(data, "ENVI", 4) == 0;
-  if ((envi ? abbe_envi_read : abbe_radiance_read)(path, &image, &error) != ABBE_OK) {
+  if (FUZZED((envi ? abbe_envi_read : abbe_radiance_read)(path, &image, &error), &error) !=
+      ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0' && image.data == NULL && image.channel == NULL);
     return 0;
   }
   FUZZ_PROMISE(image.width >= 1 && image.width <= ABBE_IMAGE_MAX_SIDE && image.height >= 1 &&
                image.height <= ABBE_IMAGE_MAX_SIDE);
   const size_t count = image.width * image.height * image.channels;
+  fuzz_same(image.data, count * sizeof *image.data);
   FUZZ_PROMISE(envi ? count <= 256 : image.channels == 3);
   for (size_t i = 0; i < count && !envi; i++) FUZZ_PROMISE(image.data[i] >= 0);
   for (int i = 0; i < 8; i++) FUZZ_PROMISE(isfinite(image.xy[i]));

@@ -30,6 +30,7 @@ static void mend(uint8_t *data, size_t size) {
 static void check_pixels(abbe_image *image) {
   FUZZ_PROMISE(image->width >= 1 && image->height >= 1 && image->channels == 3);
   FUZZ_PROMISE(abbe_rgb_encoding_is_srgb(image->xy, image->curve));
+  fuzz_same(image->data, image->width * image->height * 3 * sizeof *image->data);
   for (size_t i = 0; i < image->width * image->height * 3; i++)
     FUZZ_PROMISE(image->data[i] >= 0 && image->data[i] <= 1);
   abbe_image_free(image);
@@ -41,7 +42,8 @@ static void try_profile(const uint8_t *data, size_t size) {
   abbe_error error = {0};
   FUZZ_PROMISE(abbe_image_make(4, 1, 3, names, &image, NULL) == ABBE_OK);
   for (int i = 0; i < 12; i++) image.data[i] = (float)i / 11;
-  if (abbe_rgb_encoding_profile_to_srgb(&image, data, size, "f.png", &error) == ABBE_OK) {
+  if (FUZZED(abbe_rgb_encoding_profile_to_srgb(&image, data, size, "f.png", &error), &error) ==
+      ABBE_OK) {
     check_pixels(&image);
     return;
   }
@@ -49,7 +51,7 @@ static void try_profile(const uint8_t *data, size_t size) {
   abbe_image_free(&image);
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   abbe_image image;
   abbe_error error = {0};
   if (size < 8 || memcmp(data, "\x89PNG", 4) != 0) {
@@ -62,7 +64,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   mend(copy, size);
   const char *path = memory_file(copy, size);
   free(copy);
-  if (abbe_png_read(path, &image, &error) != ABBE_OK) {
+  if (FUZZED(abbe_png_read(path, &image, &error), &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0' && image.data == NULL && image.channel == NULL);
     return 0;
   }

@@ -7,10 +7,11 @@ const char *const fuzz_words[] = {"error: ",  "fronts:\n", "  - class: ", "point
                                   "named: {", "draft: ",   "scenes: ",    "spheres",
                                   "meshes",   "&a ",       "*a",          NULL};
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   abbe_presets presets;
   abbe_error error = {0};
-  if (abbe_presets_load(memory_file(data, size), &presets, &error) != ABBE_OK) {
+  const char *path = memory_file(data, size);
+  if (FUZZED(abbe_presets_load(path, &presets, &error), &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0' && presets.count == 0);
     return 0;
   }

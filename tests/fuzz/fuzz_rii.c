@@ -20,12 +20,12 @@ const char *const fuzz_words[] = {"DATA:\n",
                                   "&amp;",
                                   NULL};
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   abbe_material material;
   abbe_report report = {0};
   abbe_error error = {0};
-  if (abbe_rii_parse((const char *)data, size, "f.yml", NULL, &material, &report, &error) ==
-      ABBE_OK) {
+  if (FUZZED(abbe_rii_parse((const char *)data, size, "f.yml", NULL, &material, &report, &error),
+             &error) == ABBE_OK) {
     abbe_material_table table = {.count = 1, .material = &material};
     fuzz_keeps(&table);
     abbe_material_free(&material);

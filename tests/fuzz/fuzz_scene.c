@@ -68,19 +68,20 @@ static int asks_for_many(const char *text, size_t size) {
   return 0;
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   abbe_scene scene;
   abbe_error error = {0};
   if (asks_for_many((const char *)data, size)) return 0;
-  if (abbe_scene_parse((const char *)data, size, ABBE_SOURCE_DIR "/tests/fuzz/parts/f.yaml", NULL,
-                       &scene, &error) != ABBE_OK) {
+  if (FUZZED(abbe_scene_parse((const char *)data, size, ABBE_SOURCE_DIR "/tests/fuzz/parts/f.yaml",
+                              NULL, &scene, &error),
+             &error) != ABBE_OK) {
     const abbe_scene zero = {0};
     FUZZ_PROMISE(error.text[0] != '\0' && memcmp(&scene, &zero, sizeof zero) == 0);
     return 0;
   }
   abbe_plan plan = {0};
   error = (abbe_error){0};
-  if (abbe_plan_make(&scene, NULL, &plan, &error) != ABBE_OK)
+  if (FUZZED(abbe_plan_make(&scene, NULL, &plan, &error), &error) != ABBE_OK)
     FUZZ_PROMISE(error.text[0] != '\0' && plan.refractor_object == NULL && plan.model == NULL);
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);

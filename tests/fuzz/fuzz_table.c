@@ -22,10 +22,11 @@ const char *const fuzz_words[] = {"materials:\n",
                                   "? ",
                                   NULL};
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   abbe_material_table table;
   abbe_error error = {0};
-  if (abbe_material_table_parse((const char *)data, size, "f.yaml", &table, &error) == ABBE_OK)
+  if (FUZZED(abbe_material_table_parse((const char *)data, size, "f.yaml", &table, &error),
+             &error) == ABBE_OK)
     fuzz_keeps(&table);
   else
     FUZZ_PROMISE(error.text[0] != '\0' && table.material == NULL);

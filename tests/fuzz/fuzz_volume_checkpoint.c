@@ -48,7 +48,7 @@ static void prepare(void) {
   edits_begin(&kept, place);
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+int fuzz_input(const uint8_t *data, size_t size) {
   if (kept.whole_size == 0) prepare();
   if (size == 0) return 0;
   abbe_error error = {0};
@@ -56,7 +56,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   abbe_volume_fill_statistics statistics;
   edits_make(&kept, data, size);
   desc.checkpoint = memory_file(kept.file, kept.size);
-  if (abbe_volume_fill(&scene, &desc, &volume, &statistics, &error) != ABBE_OK) {
+  if (FUZZED(abbe_volume_fill(&scene, &desc, &volume, &statistics, &error), &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0');
     return 0;
   }

@@ -27,6 +27,7 @@ static inline void fuzz_keeps(const abbe_material_table *table) {
     FUZZ_PROMISE(abbe_material_check(&table->material[i], &error) == ABBE_OK);
   FUZZ_PROMISE(abbe_material_table_write(table, to, &error) == ABBE_OK);
   fflush(to);
+  fuzz_same(text, size);
   abbe_material_table back;
   abbe_result result = abbe_material_table_parse(text, size, "back", &back, &error);
   if (result != ABBE_OK) fprintf(stderr, "%s\n%s\n", error.text, text);
