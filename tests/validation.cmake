@@ -11,7 +11,7 @@ foreach(name
     environment_trace
     eye_samples
     eye_walk
-    gem_grid_file gem_maps gem_optimum gem_tilts gem_view
+    gem_ascent gem_grid_file gem_maps gem_optimum gem_slope gem_tilts gem_view
     guide_sums map_texels
     field
     file_comparison

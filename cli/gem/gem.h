@@ -30,6 +30,12 @@ abbe_result abbe_gem_optimise_plot(const char *path, const abbe_gem_input *input
                                    const abbe_gem_optimum *optimum, const char *measure,
                                    abbe_error *error);
 
+/* Looks for the best design by derivatives, of two angles or of every tier, says what came of it,
+ * and writes the best to out unless that is NULL. */
+abbe_result abbe_gem_optimise_ascend(abbe_gem_stone_input *input, const char *measure,
+                                     const abbe_gem_optimum_desc *desc, bool tiers, const char *out,
+                                     abbe_error *error);
+
 /* Tries ways of a crystal in its cut, by desc's measure and view, and says what came of it: tilts
  * from 0 to 90 degrees, azimuths as abbe_gem_orientation_axes has them. measure: for people. */
 abbe_result abbe_gem_optimise_axis(const abbe_gem_stone_input *input, const char *measure,

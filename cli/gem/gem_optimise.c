@@ -27,6 +27,7 @@ enum {
   KEY_HEAD,
   KEY_TILT,
   KEY_AXIS,
+  KEY_SEARCH,
   KEY_RANGE,
   KEY_SIZE,
   KEY_THREADS,
@@ -58,7 +59,7 @@ typedef struct request {
   size_t tables;
   double crown[2], pavilion[2], head_deg, tilt_deg, azimuth_deg;
   size_t crowns, pavilions, tilts, azimuths, size, threads; /* tilts 0: no search for axes */
-  int measure;
+  int measure, search;
 } request;
 
 static const struct argp_option options[] = {
@@ -70,6 +71,10 @@ static const struct argp_option options[] = {
      "degrees of its main facets; without it, 8 to either side of the design's", 0},
     {"pavilion", KEY_PAVILION, "FROM:TO", 0, "likewise; without it, 4 to either side", 0},
     {"grid", KEY_GRID, "CROWNSxPAVILIONS", 0, "angles tried; without it, 21x21", 0},
+    {"search", KEY_SEARCH, "NAME", 0,
+     "grid; angles (in the same ranges, by derivatives); or tiers (every tier by itself, all meets "
+     "kept); without it, grid",
+     0},
     {"output", 'o', "FILE.asc", ABBE_ARGUMENT_WRITES, "the best design", 0},
     {"plot", KEY_PLOT, "FILE", ABBE_ARGUMENT_WRITES, "the measure over both angles; .png or .svg",
      0},
@@ -115,12 +120,21 @@ static void read_tilt(request *q, const char *text) {
   exit(ABBE_EXIT_USAGE);
 }
 
+enum { SEARCH_GRID, SEARCH_ANGLES, SEARCH_TIERS, SEARCHES };
+static const char *const searches[SEARCHES] = {"grid", "angles", "tiers"};
+
 /* That the parts' options go together, and which pieces of work there are. */
 static void check_parts(const request *q, struct argp_state *state) {
   if (q->tilts > 0 &&
       (q->merge || q->part.parts > 0 || q->pairs != NULL || q->out != NULL || q->plot != NULL))
     argp_error(state, "--axis with so many ways keeps the angles: --part, --merge, --pairs, "
                       "--plot and -o are for angles");
+  if (q->search != SEARCH_GRID &&
+      (q->tilts > 0 || q->merge || q->part.parts > 0 || q->pairs != NULL || q->plot != NULL))
+    argp_error(state,
+               "--search %s has no grid: --axis with so many ways, --part, --merge, --pairs "
+               "and --plot are for one",
+               searches[q->search]);
   if (q->tables > 0 && !q->merge) argp_error(state, "one design; '%s' is too much", q->table[0]);
   if (q->merge && q->tables == 0)
     argp_error(state, "--merge: of which tables? They follow the design");
@@ -156,6 +170,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   switch (key) {
   case KEY_MEASURE:
     read_measure(q, arg);
+    return 0;
+  case KEY_SEARCH:
+    q->search = abbe_command_choice(q->stone.in.program, "--search", arg, searches, SEARCHES);
     return 0;
   case KEY_CROWN:
     read_angles(q, "--crown", arg, q->crown);
@@ -365,6 +382,13 @@ static abbe_result run(request *q, abbe_error *error) {
     return result;
   }
   if (result == ABBE_OK) result = find_angles(q, error);
+  if (result == ABBE_OK && q->search != SEARCH_GRID) {
+    const abbe_gem_optimum_desc desc = describe(q, NULL);
+    result = abbe_gem_optimise_ascend(&q->stone, measures[q->measure].text, &desc,
+                                      q->search == SEARCH_TIERS, q->out, error);
+    abbe_gem_stone_input_free(&q->stone);
+    return result;
+  }
   if (result == ABBE_OK) result = q->merge ? merge(q, &optimum, error) : search(q, &optimum, error);
   if (result == ABBE_OK) result = write_all(q, &optimum, error);
   abbe_gem_optimum_free(&optimum);
@@ -384,6 +408,7 @@ int abbe_gem_optimise(int argc, char **argv) {
       "  abbe gem optimise brilliant.asc --material quartz -o best.asc --plot best.png\n"
       "  abbe gem optimise brilliant.asc --material diamond --measure cos --crown 30:40 "
       "--pavilion 39:43 --grid 21x21\n"
+      "  abbe gem optimise brilliant.asc --material quartz --search tiers -o best.asc\n"
       "  abbe gem optimise brilliant.asc --material tanzanite --axis 4x4\n"
       "  abbe gem optimise pear.asc --material ruby --grid 201x201 --part 3/8 --pairs part-3.csv\n"
       "  abbe gem optimise pear.asc --material ruby --grid 201x201 --merge part-*.csv -o "

@@ -153,6 +153,18 @@ TEST(the_best_is_written_and_is_as_good_as_said) {
   run_clears("rm b.asc p.png");
 }
 
+TEST(every_tier_by_itself_is_better) {
+  HELD(cJSON, json) = run_json(GEM "optimise" DIAMOND "--material spinel --measure cos --search "
+                                   "tiers --size 16 --quiet -o b.asc --json",
+                               0);
+  const double design = json_number(json_item(json, "design"), "value");
+  assert_true(json_number(json_item(json, "best"), "value") > design + 0.03);
+  assert_int_equal(cJSON_GetArraySize(json_item(json, "tiers")), 7);
+  rerun_json(&json, GEM "info b.asc --json", 0);
+  assert_near(json_number(json, "corners"), 57, 0); /* all meets */
+  run_clears("rm b.asc");
+}
+
 TEST(a_design_brings_its_index) {
   HELD(cJSON, json) = run_json(GEM "report" DIAMOND "--size 24 --wavelengths 5 --tilt 0 --json", 0);
   assert_string_equal(json_item(json, "material")->valuestring, "index 2.417");
@@ -181,6 +193,7 @@ TEST(what_is_refused) {
       {GEM "report" DIAMOND "--material diamond --axis 1,0,0", "one index in all directions", 1},
       {GEM "report" DIAMOND "--material zircon --axis 0,0,0", "such as 1,0,0", 1},
       {GEM "report" DIAMOND "--material topaz --axis 1,0,0,2,0,0", "parallel", 1},
+      {GEM "optimise" DIAMOND "--material diamond --search tiers --plot p.png", "has no grid", 2},
       {GEM "optimise" DIAMOND "--material zircon --axis 3x3 -o b.asc", "keeps the angles", 2},
       {GEM "optimise" DIAMOND "--material diamond --axis 3x3", "no axis to turn", 1},
       {GEM "optimise" DIAMOND "--material diamond --tilt 10,x", "DEGREES,AZIMUTH", 2},

@@ -144,11 +144,11 @@ abbe_result abbe_gem_stone_make(const abbe_cut *cut, const abbe_cut_polyhedron *
   out->wavelengths = wavelengths->count;
   abbe_result result = allocate(out, error);
   if (result == ABBE_OK) {
-    double middle[3], radius = place_corners(polyhedron, out, middle);
+    const double radius = out->radius = place_corners(polyhedron, out, out->middle);
     const double across =
         fmin(polyhedron->max[0] - polyhedron->min[0], polyhedron->max[1] - polyhedron->min[1]);
     out->unit_m = width_m * radius / across;
-    place_planes(cut, polyhedron, middle, radius, out);
+    place_planes(cut, polyhedron, out->middle, radius, out);
     result = take_material(material, wavelengths, out, error);
   }
   if (result != ABBE_OK) abbe_gem_stone_free(out);

@@ -23,7 +23,8 @@ typedef struct abbe_gem_stone {
   double (*plane)[4]; /* [plane_count] n . x = plane[3], n unit, outwards */
   size_t vertex_count;
   double (*vertex)[3];
-  double unit_m; /* metres in a unit of length */
+  double unit_m;            /* metres in a unit of length */
+  double middle[3], radius; /* its origin in the cut, and the cut's units in one of its own */
   size_t wavelengths;
   abbe_media media; /* the stone alone; its step k begins at wavelength k */
 } abbe_gem_stone;
