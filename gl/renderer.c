@@ -67,7 +67,7 @@ static abbe_result draw_shafts(abbe_renderer *r, abbe_error *error) {
   PART(EYE, meshes, abbe_seen_meshes_make(&r->scene, &r->camera.view, &r->meshes, error),          \
        abbe_seen_meshes_free(&r->meshes))                                                          \
   PASS(EYE, glow, abbe_glow_pass_make(&r->lighting, v, &r->glow, error),                           \
-       abbe_glow_pass_run(&r->glow, error), abbe_glow_pass_free(&r->glow))                         \
+       abbe_glow_pass_run(&r->glow, error), abbe_glow_pass_free(&r->glow, r->glow_stays))          \
   PASS(EYE, receivers, abbe_receivers_pass_make(&r->lighting, v, &r->receivers, error),            \
        abbe_receivers_pass_run(&r->receivers, error), FREED(receivers, receivers_pass))            \
   PASS(EYE, refraction,                                                                            \
@@ -147,7 +147,10 @@ static abbe_result run_passes(abbe_renderer *r, abbe_error *error) {
     if (!r->seen) result = abbe_method_run(r->method, r->lit, error);
     r->lit = result == ABBE_OK;
   } else {
-    if (!r->lit && !r->plan.desc.camera_alone) result = run_stage(r, ABBE_STAGE_LIGHT, error);
+    if (!r->lit && !r->plan.desc.camera_alone) {
+      r->glow.lit = false;
+      result = run_stage(r, ABBE_STAGE_LIGHT, error);
+    }
     abbe_renderer_await_ahead(r);
     r->lit = r->lit || (result == ABBE_OK && !r->gpu.stopped &&
                         (r->plan.desc.history_of_changes || abbe_map_history_settled(&r->history)));

@@ -173,8 +173,9 @@ static abbe_result change(abbe_renderer *r, const abbe_scene *scene, const abbe_
     abbe_refraction_pass_leave(&r->refraction, &r->kept);
   if ((parts & LIGHT) != 0) abbe_method_leave(r->method, &frames);
   r->pages_stay = parts != ALL && r->inputs.pages == inputs.pages;
+  r->glow_stays = parts != ALL && r->inputs.glow == inputs.glow;
   free_parts(r, parts);
-  r->pages_stay = false;
+  r->pages_stay = r->glow_stays = false;
   if (parts == ALL && crowded) abbe_gpu_drop_programs(&r->gpu);
   take_plan(r, &plan);
   r->inputs = inputs;

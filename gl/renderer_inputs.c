@@ -5,6 +5,7 @@
 #include "gl/scene/spectra/camera_bands.h"
 #include "scenes/geometry/digest.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define MIX(h, value) ((h) = abbe_digest((h), &(value), sizeof(value)))
@@ -36,6 +37,10 @@ static uint64_t mix_material(uint64_t h, const abbe_material *m) {
   MIX(h, m->fluorescence.yield);
   h = mix_spectrum(h, m->fluorescence.excitation);
   h = mix_spectrum(h, m->fluorescence.emission);
+  for (size_t i = 0; i < m->fluorescence.rows; i++) {
+    MIX(h, m->fluorescence.row[i].nm);
+    h = mix_spectrum(h, m->fluorescence.row[i].emission);
+  }
   return mix_spectrum(h, m->attenuation);
 }
 
@@ -369,12 +374,38 @@ static uint64_t of_pages(const abbe_scene *scene, const abbe_plan *plan, const u
   return h;
 }
 
+static uint64_t of_glow(const abbe_plan *plan, const uint64_t *part) {
+  uint64_t h = 7;
+  for (unsigned i = 0; i < ABBE_PART_COUNT; i++)
+    if (i != ABBE_PART_EYE) MIX(h, part[i]);
+  MIX(h, plan->textured);
+  MIX(h, plan->receiver_colours);
+  MIX(h, plan->eye_exits);
+  MIX(h, plan->eye_share);
+  return h;
+}
+
+/* The colour of a matrix's glow goes by the lights. */
+static uint64_t mix_glow_rows(uint64_t h, const abbe_scene *scene, const abbe_plan *plan) {
+  for (size_t r = 0; r < plan->refractor_count; r++) {
+    const abbe_object *o = &scene->object[plan->refractor_object[r]];
+    const size_t rows = o->material->fluorescence.rows;
+    double *weight = rows > 0 ? calloc(rows, sizeof *weight) : NULL;
+    if (weight == NULL) continue;
+    abbe_glow_rows_weigh(scene, plan, o, weight);
+    h = abbe_digest_array(h, weight, rows, sizeof *weight);
+    free(weight);
+  }
+  return h;
+}
+
 void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
                              abbe_renderer_inputs *out) {
   uint64_t *part = out->part, light;
   part[ABBE_PART_GEOMETRY] = of_geometry(scene, plan);
   part[ABBE_PART_SURFACES] = of_surfaces(scene, plan);
-  part[ABBE_PART_SPECTRA] = mix_medium(of_spectra(scene, plan), scene->medium);
+  part[ABBE_PART_SPECTRA] =
+      mix_glow_rows(mix_medium(of_spectra(scene, plan), scene->medium), scene, plan);
   part[ABBE_PART_SHADOWS] = mix_places(part[ABBE_PART_GEOMETRY], scene, plan);
   light = mix_light_plan(mix_beams(part[ABBE_PART_SHADOWS], scene, plan), plan);
   MIX(light, part[ABBE_PART_SPECTRA]);
@@ -386,6 +417,7 @@ void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
   part[ABBE_PART_POWERS] = mix_powers(3, scene, plan);
   out->sights = of_sights(scene, plan, part);
   out->pages = of_pages(scene, plan, part);
+  out->glow = of_glow(plan, part);
 }
 
 unsigned abbe_renderer_inputs_differ(const abbe_renderer_inputs *a, const abbe_renderer_inputs *b) {

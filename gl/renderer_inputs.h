@@ -30,6 +30,7 @@ typedef struct abbe_renderer_inputs {
   uint64_t
       sights;     /* where the camera's rays through refractors go: all of the eye but the lights */
   uint64_t pages; /* what pinholes show: of smooth mirrors and refractors no lamps */
+  uint64_t glow;  /* what makes refractors glow: all but the camera */
 } abbe_renderer_inputs;
 
 void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,

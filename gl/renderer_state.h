@@ -40,6 +40,7 @@ struct abbe_renderer {
   abbe_caustics caustics;
   abbe_transports transports;
   bool pages_stay;     /* tiles of pinholes stay when light's passes are freed */
+  bool glow_stays;     /* as it is when the camera's passes are freed */
   abbe_method *method; /* in place of these and those below, or NULL */
   bool lit;            /* all of that is drawn: the maps hold the light as it is now */
 

@@ -1,5 +1,5 @@
 foreach(name glare axis chart chromaticity difference display_ocio display_sources display_table exr false_colours gamut illuminant image lut material_chart observer pleochroism picture_space png_file screen_png sheet
-        picture_file pixel_probe radiance_file relight rgb_encoding rgb_space spectral_channels upsampling weights reflected_light)
+        picture_file pixel_probe radiance_file relight reradiation rgb_encoding rgb_space spectral_channels upsampling weights reflected_light)
   abbe_test(${name} cpu abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
 target_link_libraries(test_rgb_encoding PRIVATE PkgConfig::LCMS)

@@ -2,6 +2,8 @@
 
 #include "base/file.h"
 #include "base/yaml/yaml_edit_text.h"
+#include "colorimetry/image/exr.h"
+#include "colorimetry/spectral_picture/reradiation.h"
 #include "spectral/formats/material_import.h"
 #include "spectral/formats/material_write.h"
 #include "spectral/materials/material_table.h"
@@ -11,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 bool abbe_change_option(abbe_change *change, int key, const char *arg) {
@@ -45,6 +48,24 @@ static bool is_text(const char *key) {
   return false;
 }
 
+static bool ends_with(const char *text, const char *end) {
+  const size_t length = strlen(text), own = strlen(end);
+  return length > own && strcasecmp(text + length - own, end) == 0;
+}
+
+/* A matrix of a picture. */
+static abbe_result set_matrix(abbe_table_edit *edit, const char *name, const char *path,
+                              abbe_error *error) {
+  abbe_image image = {0};
+  char *text = NULL;
+  abbe_result result = abbe_exr_read(path, &image, error);
+  if (result == ABBE_OK) result = abbe_reradiation_text(&image, path, &text, error);
+  if (result == ABBE_OK) result = abbe_table_edit_set(edit, name, "fluorescence", text, error);
+  abbe_image_free(&image);
+  free(text);
+  return result;
+}
+
 abbe_result abbe_change_assign(abbe_table_edit *edit, const char *name, const char *assignment,
                                abbe_error *error) {
   const char *equals = strchr(assignment, '=');
@@ -62,6 +83,8 @@ abbe_result abbe_change_assign(abbe_table_edit *edit, const char *name, const ch
     result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "'%.80s' has no value; to take the key out, say --unset %.80s",
                             assignment, key);
+  else if (strcmp(key, "fluorescence") == 0 && ends_with(equals, ".exr"))
+    result = set_matrix(edit, name, equals + 1, error);
   else if (is_text(key))
     result = abbe_table_edit_set_text(edit, name, key, equals + 1, error);
   else

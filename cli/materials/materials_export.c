@@ -1,6 +1,8 @@
 #include "cli/materials/materials.h"
 
 #include "base/file.h"
+#include "colorimetry/image/exr.h"
+#include "colorimetry/spectral_picture/reradiation.h"
 #include "spectral/formats/material_import.h"
 #include "spectral/formats/material_write.h"
 #include "spectral/store/material_store.h"
@@ -14,9 +16,10 @@
 
 enum { MAX_NAMES = ABBE_MATERIAL_TABLE_MAX_COUNT };
 
-typedef enum format { YAML, STORE, AGF, RII, CSV, MTLX, FORMATS } format;
+typedef enum format { YAML, STORE, AGF, RII, CSV, MTLX, EXR, FORMATS } format;
 
-static const char *const format_names[FORMATS] = {"yaml", "sqlite", "agf", "rii", "csv", "mtlx"};
+static const char *const format_names[FORMATS] = {"yaml", "sqlite", "agf", "rii",
+                                                  "csv",  "mtlx",   "exr"};
 
 typedef struct request {
   const char *program, *table, *output;
@@ -32,7 +35,7 @@ enum { KEY_TO = ABBE_MATERIALS_KEY_OWN, KEY_RANGE, KEY_STEP, KEY_ALL, KEY_FORCE 
 static const struct argp_option options[] = {
     ABBE_MATERIALS_TABLE_OPTION,
     {"to", KEY_TO, "FORMAT", 0,
-     "yaml, sqlite, agf, rii, csv or mtlx; without it, by the ending of -o", 0},
+     "yaml, sqlite, agf, rii, csv, mtlx or exr; without it, by the ending of -o", 0},
     {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES | ABBE_ARGUMENT_STREAMS,
      "where to; without it or as -, to standard output", 0},
     {"force", KEY_FORCE, NULL, 0, "write over a file that is there", 0},
@@ -87,10 +90,11 @@ static const struct argp parser = {
            "  abbe materials export ruby n-bk7 -o stones.mtlx\n"
            "  abbe materials export water --to csv --range 400:700 --step 10\n"
            "  abbe materials export sapphire --to rii -o sapphire.yml\n"
+           "  abbe materials export ruby-fluorescent -o glow.exr\n"
            "  abbe materials export --to yaml -o my-copy.yaml\n\n"
            "The last makes a copy of the compiled-in table that can be edited. What the form does "
            "not carry, and the error of n that it implies, is said on standard error. rii and csv "
-           "hold one material a file.",
+           "hold one material a file, and so does exr, which is its re-radiation matrix alone.",
 };
 
 /* By the file's ending; -1 where it says nothing. */
@@ -98,8 +102,8 @@ static int format_of(const char *path) {
   static const struct {
     const char *ending;
     int format;
-  } endings[] = {{".yaml", YAML}, {".sqlite", STORE}, {".yml", RII},
-                 {".agf", AGF},   {".csv", CSV},      {".mtlx", MTLX}};
+  } endings[] = {{".yaml", YAML}, {".sqlite", STORE}, {".yml", RII}, {".agf", AGF},
+                 {".csv", CSV},   {".mtlx", MTLX},    {".exr", EXR}};
   const char *dot = path != NULL ? strrchr(path, '.') : NULL;
   for (size_t i = 0; dot != NULL && i < sizeof endings / sizeof endings[0]; i++)
     if (strcasecmp(dot, endings[i].ending) == 0) return endings[i].format;
@@ -110,15 +114,19 @@ static void check(request *r) {
   if (r->format < 0) r->format = format_of(r->output);
   if (r->format < 0)
     abbe_materials_wrong_use(
-        r->program, "to what? --to yaml, sqlite, agf, rii, csv or mtlx, or -o with such an "
+        r->program, "to what? --to yaml, sqlite, agf, rii, csv, mtlx or exr, or -o with such an "
                     "ending; for other renderers 'abbe export' writes a scene");
-  if (r->format == STORE && r->output == NULL)
-    abbe_materials_wrong_use(r->program, "a store is a file; name it with -o FILE.sqlite");
-  if ((r->format == RII || r->format == CSV) && r->names != 1)
-    abbe_materials_wrong_use(r->program, r->format == RII
-                                             ? "a file of refractiveindex.info holds one material; "
-                                               "name one"
-                                             : "a CSV file holds one material; name one");
+  if ((r->format == STORE || r->format == EXR) && r->output == NULL)
+    abbe_materials_wrong_use(r->program, r->format == STORE
+                                             ? "a store is a file; name it with -o FILE.sqlite"
+                                             : "a picture is a file; name it with -o FILE.exr");
+  if ((r->format == RII || r->format == CSV || r->format == EXR) && r->names != 1)
+    abbe_materials_wrong_use(
+        r->program, r->format == RII   ? "a file of refractiveindex.info holds one material; name "
+                                         "one"
+                    : r->format == CSV ? "a CSV file holds one material; name one"
+                                       : "a picture holds the re-radiation of one material; name "
+                                         "one");
   if (r->sampled && r->format != CSV)
     abbe_materials_wrong_use(r->program, "--range and --step go with --to csv");
   if (r->json && r->output == NULL)
@@ -185,6 +193,13 @@ static abbe_result save(const request *r, const abbe_material_table *chosen, abb
     return abbe_error_set(error, ABBE_IO,
                           "%s: is there already; --force writes over it, or choose another name",
                           r->output);
+  abbe_image matrix = {0};
+  if (r->format == EXR) ABBE_TRY(abbe_reradiation_picture(chosen->material, &matrix, error));
+  if (r->format == EXR) {
+    const abbe_result written = abbe_exr_write(r->output, &matrix, error);
+    abbe_image_free(&matrix);
+    return written;
+  }
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, r->output, error);
   if (result == ABBE_OK) result = write_to(r, chosen, writer.stream, report, error);

@@ -253,7 +253,10 @@ static void show_fluorescence(const abbe_material *m) {
   }
   printf("  fluorescent   yield %.4g photons; emits %.4g to %.4g nm, most at %.4g nm\n", f->yield,
          nm[1][0], nm[1][1], most[1]);
-  if (f->excitation != NULL)
+  if (f->rows > 0)
+    printf("                a matrix of %zu rows, excited by %.4g to %.4g nm\n", f->rows,
+           f->row[0].nm, f->row[f->rows - 1].nm);
+  else if (f->excitation != NULL)
     printf("                excited by %.4g to %.4g nm, most by %.4g nm\n", nm[0][0], nm[0][1],
            most[0]);
   else
@@ -373,6 +376,13 @@ void abbe_materials_add_absorption(cJSON *to, const abbe_material *m) {
   const abbe_fluorescence *f = &m->fluorescence;
   cJSON *item = cJSON_AddObjectToObject(to, "fluorescence");
   cJSON_AddNumberToObject(item, "yield", f->yield);
+  cJSON *rows = f->rows > 0 ? cJSON_AddArrayToObject(item, "matrix") : NULL;
+  for (size_t i = 0; i < f->rows; i++) {
+    cJSON *row = cJSON_CreateObject();
+    cJSON_AddNumberToObject(row, "nm", f->row[i].nm);
+    add_points(row, "emission", f->row[i].emission);
+    cJSON_AddItemToArray(rows, row);
+  }
   add_points(item, "emission", f->emission);
   if (f->excitation != NULL) add_points(item, "excitation_per_m", f->excitation);
 }

@@ -24,14 +24,17 @@ typedef struct abbe_glow_pass {
   float size[ABBE_PLAN_MOST_GLOWING][3];  /* m */
   float ball[ABBE_PLAN_MOST_GLOWING][4];  /* as it lights receivers: centre, radius, m */
   float light[ABBE_PLAN_MOST_GLOWING][3]; /* and its rgb radiance */
+  bool lit;                               /* all of that is of the light as it is */
 } abbe_glow_pass;
 
-/* A plan that does not glow gets one that is zero. ABBE_GL, ABBE_NO_MEMORY. */
+/* A plan that does not glow gets one that is zero; one that has stayed is left as it is. ABBE_GL,
+ * ABBE_NO_MEMORY. */
 abbe_result abbe_glow_pass_make(const struct abbe_lighting *lighting,
                                 const abbe_shader_variant *variant, abbe_glow_pass *out,
                                 abbe_error *error);
-void abbe_glow_pass_free(abbe_glow_pass *pass);
-/* In the light as it is; waits for the device. */
+/* stays: nothing that it is made of has changed but the camera, and it is kept. */
+void abbe_glow_pass_free(abbe_glow_pass *pass, bool stays);
+/* In the light as it is, unless it is lit already; waits for the device. */
 abbe_result abbe_glow_pass_run(abbe_glow_pass *glow, abbe_error *error);
 
 typedef struct abbe_lighting {

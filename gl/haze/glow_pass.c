@@ -45,6 +45,7 @@ abbe_result abbe_glow_pass_make(const abbe_lighting *lighting, const abbe_shader
   abbe_gpu *gpu = lighting->scene->gpu;
   abbe_shader_variant rays = *variant;
   char facts[96];
+  if (out->lighting != NULL) return ABBE_OK; /* it has stayed */
   *out = (abbe_glow_pass){.lighting = lighting};
   if (!plan->glowing) return ABBE_OK;
   snprintf(facts, sizeof facts, "#define GLOW_RAYS\n%s", abbe_shader_variant_waves(plan));
@@ -56,8 +57,8 @@ abbe_result abbe_glow_pass_make(const abbe_lighting *lighting, const abbe_shader
   return abbe_shader_variant_compute(&rays, gpu, "refraction.comp", facts, &out->program, error);
 }
 
-void abbe_glow_pass_free(abbe_glow_pass *pass) {
-  if (pass->lighting == NULL) return;
+void abbe_glow_pass_free(abbe_glow_pass *pass, bool stays) {
+  if (stays || pass->lighting == NULL) return;
   abbe_gpu_drop_buffers(scene_of(pass)->gpu, 1, &pass->sums);
   abbe_gpu_drop_textures(scene_of(pass)->gpu, 1, &pass->cells);
   *pass = (abbe_glow_pass){0};
@@ -153,8 +154,8 @@ static void measure(asked *a) {
 
 /* ---- what they say ---- */
 
-/* Of light of unit power, photons of each band that would excite the material, were all absorbed,
- * in the measure in which the light has Y = 1. A band's share is by its brightness to the scene's
+/* Of light of unit power, photons that the material would emit by each band, were all absorbed, in
+ * the measure in which the light has Y = 1. A band's share is by its brightness to the scene's
  * white; where absorption varies in it, more is taken of what is absorbed more. */
 static abbe_result count_photons(const asked *a, const abbe_illuminant *illuminant, double *photons,
                                  abbe_error *error) {
@@ -178,7 +179,7 @@ static abbe_result count_photons(const asked *a, const abbe_illuminant *illumina
     while (band + 1 < w->count && nm >= w->edge_nm[band + 1]) band++;
     abbe_observer_xyz_of(scene->plan->desc.observer, nm, xyz);
     y += watts * xyz[1];
-    photons[band] += watts * nm * abbe_material_excites(m, nm) * taken;
+    photons[band] += watts * nm * abbe_material_excites(m, nm) * abbe_material_yield(m, nm) * taken;
     abbe_weights_range_xyz(&white, from, to, xyz);
     for (int c = 0; c < 3; c++) weight += xyz[c] / fmax(scene->tables.camera.sum[c], 1e-30);
     seen[band][0] += weight;
@@ -310,7 +311,6 @@ static float share_inside(const bool *inside, const size_t at[3]) {
 /* The source in each cell, of what the sums hold. */
 static abbe_result fill_cells(const asked *a, double unit, abbe_error *error) {
   const abbe_gl *gl = scene_of(a->pass)->gpu->gl;
-  const double yield = a->object->material->fluorescence.yield;
   GLuint sum[ALL_CELLS][2];
   float(*out)[4] = calloc(ALL_CELLS, sizeof *out);
   bool *inside = calloc((size_t)SIDE * SIDE * SIDE, sizeof *inside);
@@ -328,7 +328,7 @@ static abbe_result fill_cells(const asked *a, double unit, abbe_error *error) {
     const size_t at[3] = {i % CELLS, i / CELLS % CELLS, i / CELLS / CELLS};
     const double photons = ((double)sum[i][1] * 0x1p32 + (double)sum[i][0]) / unit;
     out[i][1] = share_inside(inside, at);
-    if (out[i][1] > 0) out[i][0] = (float)(yield * photons / (4 * ABBE_PI * volume));
+    if (out[i][1] > 0) out[i][0] = (float)(photons / (4 * ABBE_PI * volume));
   }
   abbe_gpu_bind_array(scene_of(a->pass)->gpu, a->pass->program, "glow_cells", UNIT_GLOW,
                       a->pass->cells);
@@ -406,7 +406,7 @@ static abbe_result light_refractor(abbe_glow_pass *pass, size_t refractor, abbe_
 abbe_result abbe_glow_pass_run(abbe_glow_pass *pass, abbe_error *error) {
   const abbe_gpu_scene *scene = scene_of(pass);
   const abbe_plan *plan = scene->plan;
-  if (!plan->glowing) return ABBE_OK;
+  if (!plan->glowing || pass->lit) return ABBE_OK;
   abbe_gpu_start_lap(scene->gpu);
   memset(pass->low, 0, sizeof pass->low);
   memset(pass->light, 0, sizeof pass->light);
@@ -415,6 +415,7 @@ abbe_result abbe_glow_pass_run(abbe_glow_pass *pass, abbe_error *error) {
     if (!plan->mirror[r] && abbe_material_is_fluorescent(m))
       ABBE_TRY(light_refractor(pass, r, error));
   }
+  pass->lit = !scene->gpu->stopped;
   abbe_gpu_book_lap(scene->gpu, ABBE_PASS_EYE_GLOW);
   return ABBE_OK;
 }

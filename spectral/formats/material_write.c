@@ -145,6 +145,13 @@ static void write_absorption(const abbe_material *m, FILE *to) {
 static void write_fluorescence(const abbe_fluorescence *f, FILE *to) {
   if (f->yield == 0) return;
   fputs("    fluorescence:\n", to);
+  if (f->rows > 0) fputs("      matrix:\n", to);
+  for (size_t i = 0; i < f->rows; i++) {
+    write_number("      - nm", f->row[i].nm, to);
+    fputs("        emission: ", to);
+    write_points(f->row[i].emission, NULL, 10, to);
+  }
+  if (f->rows > 0) return;
   write_number("      yield", f->yield, to);
   fputs("      emission: ", to);
   write_points(f->emission, NULL, 8, to);

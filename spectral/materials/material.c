@@ -20,8 +20,7 @@ void abbe_material_free(abbe_material *material) {
   for (int i = 0; i < 2; i++) abbe_dispersion_free(&material->outer[i]);
   abbe_spectrum_free(material->attenuation);
   for (int i = 0; i < 2; i++) abbe_spectrum_free(material->attenuation_yz[i]);
-  abbe_spectrum_free(material->fluorescence.excitation);
-  abbe_spectrum_free(material->fluorescence.emission);
+  abbe_fluorescence_free(&material->fluorescence);
   *material = (abbe_material){0};
 }
 
@@ -193,51 +192,6 @@ abbe_result abbe_material_check_absorption(const abbe_material *m, abbe_error *e
                         "%s: a uniaxial crystal absorbs alike along x and y: give 'ordinary' and "
                         "'extraordinary'",
                         m->name);
-}
-
-static double first_of(const abbe_spectrum *s) {
-  return abbe_spectrum_lambda_nm(s)[0];
-}
-
-static double last_of(const abbe_spectrum *s) {
-  return abbe_spectrum_lambda_nm(s)[abbe_spectrum_count(s) - 1];
-}
-
-abbe_result abbe_material_check_fluorescence(const abbe_material *m, abbe_error *error) {
-  const abbe_fluorescence *f = &m->fluorescence;
-  if (f->yield == 0 && f->excitation == NULL && f->emission == NULL) return ABBE_OK;
-  if (!(f->yield > 0 && f->yield <= 1))
-    return abbe_error_set(
-        error, ABBE_INVALID_ARGUMENT,
-        "%s: the 'yield' of its fluorescence is %g; a photon that excites it gives "
-        "above 0 and at most 1",
-        m->name, f->yield);
-  if (f->emission == NULL ||
-      !(abbe_spectrum_integral(f->emission, first_of(f->emission), last_of(f->emission)) > 0))
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "%s: its fluorescence wants an 'emission', photons by nm at two "
-                          "wavelengths or more, some above 0",
-                          m->name);
-  const bool dark =
-      f->excitation != NULL &&
-      !(abbe_spectrum_integral(f->excitation, first_of(f->excitation), last_of(f->excitation)) > 0);
-  if (dark || (f->excitation == NULL && m->attenuation == NULL))
-    return abbe_error_set(
-        error, ABBE_INVALID_ARGUMENT,
-        "%s: it absorbs nothing that could make it glow: give its fluorescence an "
-        "'excitation_per_m', or the material an 'absorption'",
-        m->name);
-  if (f->excitation != NULL && abbe_material_is_pleochroic(m))
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "%s: it absorbs by direction, and all of that excites it: leave "
-                          "'excitation_per_m' out",
-                          m->name);
-  if (f->excitation == NULL || last_of(f->excitation) <= first_of(f->emission)) return ABBE_OK;
-  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                        "%s: it emits from %g nm and is excited up to %g nm: no photon is emitted "
-                        "at a shorter wavelength than the one that excites; end 'excitation_per_m' "
-                        "where 'emission' begins",
-                        m->name, first_of(f->emission), last_of(f->excitation));
 }
 
 /* What would be of no effect, and could not be written. */
@@ -442,9 +396,10 @@ bool abbe_material_is_pleochroic(const abbe_material *material) {
 
 static double excitation_of(const abbe_material *m, double lambda_nm) {
   const abbe_spectrum *s = m->fluorescence.excitation;
-  return s != NULL && lambda_nm >= first_of(s) && lambda_nm <= last_of(s)
-             ? attenuation_of(s, lambda_nm)
-             : 0;
+  if (s == NULL) return 0;
+  const double *nm = abbe_spectrum_lambda_nm(s);
+  const bool within = lambda_nm >= nm[0] && lambda_nm <= nm[abbe_spectrum_count(s) - 1];
+  return within ? attenuation_of(s, lambda_nm) : 0;
 }
 
 double abbe_material_attenuation_along(const abbe_material *material, int axis, double lambda_nm) {
@@ -462,24 +417,13 @@ double abbe_material_attenuation(const abbe_material *material, double lambda_nm
   return sum / 3;
 }
 
-bool abbe_material_is_fluorescent(const abbe_material *material) {
-  return material->fluorescence.yield > 0;
-}
-
 double abbe_material_excites(const abbe_material *material, double lambda_nm) {
   const abbe_fluorescence *f = &material->fluorescence;
-  if (!abbe_material_is_fluorescent(material) || lambda_nm >= first_of(f->emission)) return 0;
+  if (f->rows > 0) return lambda_nm >= f->row[0].nm && lambda_nm <= f->row[f->rows - 1].nm ? 1 : 0;
+  if (f->yield == 0 || lambda_nm >= abbe_spectrum_lambda_nm(f->emission)[0]) return 0;
   if (f->excitation == NULL) return 1;
   const double own = excitation_of(material, lambda_nm);
   return own > 0 ? own / abbe_material_attenuation(material, lambda_nm) : 0;
-}
-
-double abbe_material_emission(const abbe_material *material, double from_nm, double to_nm) {
-  const abbe_spectrum *s = material->fluorescence.emission;
-  if (!abbe_material_is_fluorescent(material)) return 0;
-  const double low = first_of(s), high = last_of(s);
-  const double from = fmin(fmax(from_nm, low), high), to = fmin(fmax(to_nm, from), high);
-  return abbe_spectrum_integral(s, from, to) / abbe_spectrum_integral(s, low, high);
 }
 
 bool abbe_material_is_opaque(const abbe_material *material, double min_nm, double max_nm) {

@@ -29,16 +29,34 @@ typedef struct abbe_material_fit {
 
 enum { ABBE_MATERIAL_MAX_NAME = 80 };
 
-/* What it re-radiates of what it absorbs: a re-radiation matrix that is a product of what excites
- * it and of what it emits [Donaldson1954]. Emission is isotropic, unpolarised and in photons; it
- * begins where excitation has ended. */
+/* A row of a re-radiation matrix. */
+typedef struct abbe_reradiation_row {
+  double nm;               /* that excites */
+  abbe_spectrum *emission; /* photons by nm by photon absorbed there, dark outside its points */
+  double yield;            /* all of these */
+} abbe_reradiation_row;
+
+/* What it re-radiates of what it absorbs: a re-radiation matrix [Donaldson1954], of rows or a
+ * product of what excites it and of what it emits. Emission is isotropic, unpolarised and in
+ * photons, none of it at shorter wavelengths than what excites. */
 typedef struct abbe_fluorescence {
-  double yield; /* photons emitted by photon that excites, 0 to 1; 0: it does not glow */
+  double yield; /* photons emitted by photon that excites, 0 to 1; of rows the most of one; 0: it
+                   does not glow */
   abbe_spectrum *excitation; /* 1/m at nm, dark outside its points: absorption of its own, all of
                                 which excites; NULL: all that the material absorbs at shorter
                                 wavelengths than those of the emission does */
-  abbe_spectrum *emission;   /* photons by nm, of any scale, dark outside its points */
+  abbe_spectrum *emission;   /* photons by nm, of any scale, dark outside its points; of rows their
+                                sum */
+  size_t rows;               /* 0: it is the product */
+  abbe_reradiation_row *row; /* ascending; straight between them, nothing excites outside of them */
 } abbe_fluorescence;
+
+void abbe_fluorescence_free(abbe_fluorescence *fluorescence);
+/* One row more; takes the emission over, also where it fails. ABBE_NO_MEMORY. */
+abbe_result abbe_fluorescence_add_row(abbe_fluorescence *fluorescence, double nm,
+                                      abbe_spectrum *emission, abbe_error *error);
+/* After the last: yield and emission of the rows. Errors of abbe_spectrum_make. */
+abbe_result abbe_fluorescence_sum_rows(abbe_fluorescence *fluorescence, abbe_error *error);
 
 /* What a maker's catalogue says about a glass besides its index. It is carried, not used, but for
  * the density, which weighs stones, and dn/dT. 0 (NULL) means that the catalogue is silent, as it
@@ -174,11 +192,21 @@ bool abbe_material_is_pleochroic(const abbe_material *material);
 /* The same for a field along principal axis 0, 1 or 2 (x, y, z; the optic axis is z). */
 double abbe_material_attenuation_along(const abbe_material *material, int axis, double lambda_nm);
 
-/* Whether it glows; the share of what it absorbs at lambda_nm that excites it; and the share of the
- * photons that it emits from one wavelength to another, ascending. */
+/* Whether it glows; the share of what it absorbs at lambda_nm that excites it; photons that it
+ * emits by photon that excites; and the share of its photons, of all rows alike, from one
+ * wavelength to another, ascending. */
 bool abbe_material_is_fluorescent(const abbe_material *material);
 double abbe_material_excites(const abbe_material *material, double lambda_nm);
+double abbe_material_yield(const abbe_material *material, double lambda_nm);
 double abbe_material_emission(const abbe_material *material, double from_nm, double to_nm);
+/* Rows of its re-radiation, a product being one; what a row adds to the yield at lambda_nm, and the
+ * share of the row's photons from one wavelength to another. */
+size_t abbe_material_glow_rows(const abbe_material *material);
+double abbe_material_row_yield(const abbe_material *material, size_t row, double lambda_nm);
+double abbe_material_row_emission(const abbe_material *material, size_t row, double from_nm,
+                                  double to_nm);
+/* Photons by nm at to_nm by photon that excites at from_nm. */
+double abbe_material_reradiates(const abbe_material *material, double from_nm, double to_nm);
 
 /* Whether it absorbs within a wavelength (down to 1/e: k above 0.08) in most of the range, as
  * metals do, in which light does not get on. A conductor does. */

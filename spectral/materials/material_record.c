@@ -158,6 +158,47 @@ static abbe_result read_absorption(abbe_record_reading *r) {
 
 /* ---- fluorescence ---- */
 
+static abbe_result read_matrix(abbe_record_reading *r, abbe_yaml_node list) {
+  abbe_fluorescence *f = &r->material->fluorescence;
+  const size_t rows = abbe_yaml_count(r->yaml, list);
+  if (rows == 0 || !abbe_yaml_is_mapping(r->yaml, abbe_yaml_item(r->yaml, list, 0)))
+    return abbe_yaml_fail(r->yaml, list, r->error,
+                          "'matrix' wants rows such as {nm: 400, emission: [[600, 0], [610, "
+                          "0.05], [620, 0]]}: photons by nm by photon absorbed at 400 nm");
+  for (size_t i = 0; i < rows; i++) {
+    const abbe_yaml_node row = abbe_yaml_item(r->yaml, list, i);
+    abbe_spectrum *emission = NULL;
+    abbe_yaml_node node;
+    double nm = 0;
+    ABBE_TRY(abbe_yaml_require(r->yaml, row, "nm", &node, r->error));
+    ABBE_TRY(abbe_yaml_get_number(r->yaml, row, "nm", ABBE_SPECTRUM_LOW_NM, ABBE_SPECTRUM_HIGH_NM,
+                                  &nm, r->error));
+    ABBE_TRY(abbe_yaml_require(r->yaml, row, "emission", &node, r->error));
+    ABBE_TRY(abbe_record_read_points(r, node, "emission", 0, 1e15, ABBE_INTERPOLATION_LINEAR,
+                                     &emission));
+    ABBE_TRY(abbe_fluorescence_add_row(f, nm, emission, r->error));
+    ABBE_TRY(abbe_yaml_check_keys(r->yaml, row, "a row of 'matrix'", r->error));
+  }
+  return abbe_fluorescence_sum_rows(f, r->error);
+}
+
+static abbe_result read_product(abbe_record_reading *r, abbe_yaml_node where,
+                                abbe_yaml_node emission, abbe_yaml_node excitation) {
+  abbe_fluorescence *f = &r->material->fluorescence;
+  if (emission.id == 0)
+    return abbe_yaml_fail(r->yaml, where, r->error,
+                          "'fluorescence' wants an 'emission', or a 'matrix'");
+  if (abbe_yaml_get(r->yaml, where, "yield").id == 0)
+    return abbe_yaml_fail(r->yaml, where, r->error,
+                          "'fluorescence' wants a 'yield', photons emitted by photon that excites, "
+                          "0 to 1");
+  ABBE_TRY(abbe_record_read_points(r, emission, "emission", 0, 1e15, ABBE_INTERPOLATION_LINEAR,
+                                   &f->emission));
+  if (excitation.id == 0) return ABBE_OK;
+  return abbe_record_read_points(r, excitation, "excitation_per_m", 0, 1e15,
+                                 ABBE_INTERPOLATION_LINEAR, &f->excitation);
+}
+
 static abbe_result read_fluorescence(abbe_record_reading *r) {
   const abbe_yaml_node where = abbe_yaml_get(r->yaml, r->record, "fluorescence");
   abbe_fluorescence *f = &r->material->fluorescence;
@@ -166,22 +207,17 @@ static abbe_result read_fluorescence(abbe_record_reading *r) {
   if (!abbe_yaml_is_mapping(r->yaml, where))
     return abbe_yaml_fail(r->yaml, where, r->error,
                           "'fluorescence' wants 'yield' and 'emission', and may have "
-                          "'excitation_per_m'");
+                          "'excitation_per_m'; or a 'matrix'");
   const abbe_yaml_node emission = abbe_yaml_get(r->yaml, where, "emission"),
-                       excitation = abbe_yaml_get(r->yaml, where, "excitation_per_m");
+                       excitation = abbe_yaml_get(r->yaml, where, "excitation_per_m"),
+                       matrix = abbe_yaml_get(r->yaml, where, "matrix");
   ABBE_TRY(abbe_yaml_get_number(r->yaml, where, "yield", 0, 1, &f->yield, r->error));
   ABBE_TRY(abbe_yaml_check_keys(r->yaml, where, "'fluorescence'", r->error));
-  if (emission.id == 0)
-    return abbe_yaml_fail(r->yaml, where, r->error, "'fluorescence' wants an 'emission'");
-  if (abbe_yaml_get(r->yaml, where, "yield").id == 0)
+  if (matrix.id != 0 && (f->yield > 0 || emission.id != 0 || excitation.id != 0))
     return abbe_yaml_fail(r->yaml, where, r->error,
-                          "'fluorescence' wants a 'yield', photons emitted by photon that excites, "
-                          "0 to 1");
-  ABBE_TRY(abbe_record_read_points(r, emission, "emission", 0, 1e15, ABBE_INTERPOLATION_LINEAR,
-                                   &f->emission));
-  if (excitation.id != 0)
-    ABBE_TRY(abbe_record_read_points(r, excitation, "excitation_per_m", 0, 1e15,
-                                     ABBE_INTERPOLATION_LINEAR, &f->excitation));
+                          "a 'matrix' has all of the fluorescence: leave 'yield', 'emission' and "
+                          "'excitation_per_m' out");
+  ABBE_TRY(matrix.id != 0 ? read_matrix(r, matrix) : read_product(r, where, emission, excitation));
   if (abbe_material_check_fluorescence(r->material, &why) == ABBE_OK) return ABBE_OK;
   return abbe_yaml_fail(r->yaml, where, r->error, "%s", why.text);
 }

@@ -186,6 +186,10 @@ static abbe_result insert(sqlite3 *db, const abbe_material_table *table, abbe_er
   for (size_t i = 0; i < table->count && result == ABBE_OK; i++) {
     const abbe_material *m = &table->material[i];
     result = abbe_material_check(m, error);
+    if (result == ABBE_OK && m->fluorescence.rows > 0)
+      result =
+          abbe_error_set(error, ABBE_UNSUPPORTED,
+                         "%s: a store has no place for a re-radiation matrix; YAML has", m->name);
     if (result != ABBE_OK) break;
     sqlite3_reset(q);
     sqlite3_clear_bindings(q);

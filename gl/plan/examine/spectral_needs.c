@@ -223,13 +223,13 @@ static void note_pleochroism(const abbe_material *material, abbe_plan *plan) {
 static void note_fluorescence(const abbe_material *m, double low, double high, abbe_plan *plan) {
   const abbe_fluorescence *f = &m->fluorescence;
   if (!abbe_material_is_fluorescent(m)) return;
-  const size_t last = abbe_spectrum_count(f->emission) - 1;
   const double *nm = abbe_spectrum_lambda_nm(f->emission);
   abbe_plan_note(plan,
-                 "%s: fluorescent; of photons that excite it %.3g %% come back at %.4g to %.4g nm, "
-                 "%.3g %% of these within the range",
-                 m->name, 100 * f->yield, nm[0], nm[last],
-                 100 * abbe_material_emission(m, low, high));
+                 "%s: fluorescent; of photons that excite it %.3g %% come back at %.4g to "
+                 "%.4g nm, %.3g %% of these within the range%s",
+                 m->name, 100 * f->yield, nm[0], nm[abbe_spectrum_count(f->emission) - 1],
+                 100 * abbe_material_emission(m, low, high),
+                 f->rows > 0 ? "; by a matrix, drawn in one colour" : "");
 }
 
 /* The first object of the material, of those that the plan does not have yet. */

@@ -139,14 +139,20 @@ static abbe_result fill_glow(const abbe_scene *scene, band_set *s, abbe_error *e
   for (size_t r = 0; r < s->plan->refractor_count; r++) {
     const abbe_material *m = scene->object[s->plan->refractor_object[r]].material;
     if (s->plan->mirror[r] || !abbe_material_is_fluorescent(m)) continue;
+    double *weight = calloc(abbe_material_glow_rows(m), sizeof *weight);
+    if (weight == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
+    abbe_glow_rows_weigh(scene, s->plan, &scene->object[s->plan->refractor_object[r]], weight);
     for (size_t i = 0; i < s->tables->all.count; i++)
       for (size_t k = s->step[i]; k < s->step[i + 1]; k++) {
         const double width = (s->edge_nm[i + 1] - s->edge_nm[i]) / (double)steps_of(s, i);
         const double from = s->edge_nm[i] + width * (double)(k - s->step[i]);
-        const double photons = abbe_material_emission(m, from, from + width);
+        double photons = 0;
+        for (size_t row = 0; row < abbe_material_glow_rows(m); row++)
+          photons += weight[row] * abbe_material_row_emission(m, row, from, from + width);
         abbe_observer_xyz_of(s->plan->desc.observer, from + width / 2, s->glow[r * count + k]);
         for (int c = 0; c < 3; c++) s->glow[r * count + k][c] *= photons / (from + width / 2);
       }
+    free(weight);
   }
   return ABBE_OK;
 }

@@ -37,6 +37,10 @@ size_t abbe_camera_bands_texels(const abbe_plan *plan);
  * and z's, and the sine and cosine of the angle between an optic axis and z, which lies between x
  * and z (crystals.glsl). */
 size_t abbe_camera_bands_crystals(const abbe_plan *plan);
+/* Of all that the object, which glows, emits in the light that comes to its middle, the share of
+ * each row of its material's re-radiation. */
+void abbe_glow_rows_weigh(const abbe_scene *scene, const abbe_plan *plan, const abbe_object *object,
+                          double *weight);
 /* The first texel of what refractors emit by fluorescence, of a plan in which some glow:
  * [refractors][sets][count][ABBE_PART_LIGHT_TEXELS], X, Y and Z of a photon a unit of the lights'
  * power, shared out over the parts; others emit none. */
@@ -52,8 +56,8 @@ bool abbe_camera_bands_interleave(const abbe_plan *plan);
 /* out: [refractors][ABBE_CAMERA_BAND_SETS][abbe_camera_bands_count]; texel, zeroed: as many as
  * abbe_camera_bands_texels says, of [sets][count][ABBE_BAND_COLOUR_TEXELS], then of
  * [refractors][sets][count][ABBE_PART_TEXELS] and of [sets][count][ABBE_PART_LIGHT_TEXELS], and
- * the parts along x, y and z of a plan with pleochroism, as those before; crystals and glow. Errors of
- * abbe_spectral_tables_make. */
+ * the parts along x, y and z of a plan with pleochroism, as those before; crystals and glow. Errors
+ * of abbe_spectral_tables_make. */
 abbe_result abbe_camera_bands_fill(const abbe_scene *scene, const abbe_plan *plan,
                                    const abbe_spectral_tables *tables, abbe_camera_band *out,
                                    float (*texel)[4], abbe_error *error);

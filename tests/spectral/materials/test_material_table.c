@@ -293,6 +293,9 @@ TEST(bad_dispersion_is_refused) {
                 "did you mean 'spline'?");
 }
 
+#define GLOWS_BY(rows)                                                                             \
+  "  absorption: {attenuation_per_m: [[400, 1]]}\n  fluorescence: {matrix: [" rows "]}\n"
+
 TEST(bad_absorption_and_fits_are_refused) {
   const char *const good = "materials:\n-\n" GOOD;
   const struct {
@@ -324,6 +327,20 @@ TEST(bad_absorption_and_fits_are_refused) {
       {"  fluorescence: {yield: 1, emission: [[500, 1], [600, 0]], excitation_per_m: [[400, 1], "
        "[510, 1]]}\n",
        "emits from 500 nm and is excited up to 510 nm"},
+      {"  fluorescence: {matrix: []}\n", "'matrix' wants rows such as"},
+      {"  fluorescence: {yield: 0.5, matrix: [{nm: 400, emission: [[500, 0], [600, 0.01]]}]}\n",
+       "leave 'yield', 'emission' and 'excitation_per_m' out"},
+      {"  fluorescence: {matrix: [{emission: [[500, 0], [600, 0.01]]}]}\n", "'nm' is missing"},
+      {GLOWS_BY("{nm: 400, emission: [[500, 0], [600, 0.01]]}"), "one row"},
+      {GLOWS_BY("{nm: 420, emission: [[500, 0], [600, 0.01]]}, {nm: 400, emission: [[500, 0], "
+                "[600, 0.01]]}"),
+       "ascend; 400 nm follows 420 nm"},
+      {GLOWS_BY("{nm: 400, emission: [[500, 0], [600, 0.03]]}, {nm: 420, emission: [[500, 0], "
+                "[600, 0.01]]}"),
+       "of a photon of 400 nm its re-radiation matrix gives 1.5 back"},
+      {GLOWS_BY("{nm: 400, emission: [[415, 0], [600, 0.001]]}, {nm: 420, emission: [[500, 0], "
+                "[600, 0.01]]}"),
+       "let it emit from 420 nm on"},
       {"  absorption: {attenuation_per_m: 3}\n", "pairs [nm, value]"},
       {"  absorption: {attenuation_per_m: [[400, 1]], distance_m: 2}\n", "no key 'distance_m'"},
       {"  absorption: {attenuation_per_m: [[400, 1]], colour: [1, 1, 1], distance_m: 2}\n",

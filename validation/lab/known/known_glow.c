@@ -16,21 +16,44 @@ static const char reason[] = "as improbable as four standard errors, taken from 
 typedef struct glowing {
   abbe_material material;
   double excitation, absorption; /* 1/m; the latter of its own glow */
+  bool matrix;
 } glowing;
 
-static abbe_result make(glowing *g, double excitation, double absorption, abbe_error *error) {
+/* A matrix of two rows, each with a triangle of its own. */
+static const struct { double nm, from_nm, yield; } rows[2] = {{420, 600, 0.4}, {480, 615, 0.9}};
+
+static double row_yield(int i, double nm) {
+  return rows[i].yield * (1 - fabs(nm - rows[i].nm) / (rows[1].nm - rows[0].nm));
+}
+
+static abbe_result add_rows(abbe_fluorescence *f, abbe_error *error) {
+  for (int i = 0; i < 2; i++) {
+    const double half = (to_nm - from_nm) / 2,
+                 nm[3] = {rows[i].from_nm, rows[i].from_nm + half, rows[i].from_nm + 2 * half},
+                 photons[3] = {0, rows[i].yield / half, 0};
+    abbe_spectrum *emission = NULL;
+    ABBE_TRY(abbe_spectrum_make(nm, photons, 3, ABBE_INTERPOLATION_LINEAR, &emission, error));
+    ABBE_TRY(abbe_fluorescence_add_row(f, rows[i].nm, emission, error));
+  }
+  return abbe_fluorescence_sum_rows(f, error);
+}
+
+static abbe_result make(glowing *g, double excitation, double absorption, bool matrix,
+                        abbe_error *error) {
   const double nm[3] = {from_nm, (from_nm + to_nm) / 2, to_nm}, photons[3] = {0, 1, 0};
   const double below[2] = {400, excited_nm}, taken[2] = {excitation, excitation},
-               above[4] = {400, 500, 599, 700}, kept[4] = {0, 0, absorption, absorption};
+               above[4] = {400, 500, 599, 700},
+               kept[4] = {matrix ? excitation : 0, matrix ? excitation : 0, absorption, absorption};
   static char name[] = "glowing";
   abbe_material *m = &g->material;
-  *g = (glowing){.excitation = excitation, .absorption = absorption};
+  *g = (glowing){.excitation = excitation, .absorption = absorption, .matrix = matrix};
   m->name = name;
   m->dispersion = (abbe_dispersion){.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1}};
   m->min_nm = 300;
   m->max_nm = 900;
-  m->fluorescence.yield = yield;
   ABBE_TRY(abbe_spectrum_make(above, kept, 4, ABBE_INTERPOLATION_LINEAR, &m->attenuation, error));
+  if (matrix) return add_rows(&m->fluorescence, error);
+  m->fluorescence.yield = yield;
   ABBE_TRY(abbe_spectrum_make(below, taken, 2, ABBE_INTERPOLATION_LINEAR,
                               &m->fluorescence.excitation, error));
   return abbe_spectrum_make(nm, photons, 3, ABBE_INTERPOLATION_LINEAR, &m->fluorescence.emission,
@@ -39,8 +62,7 @@ static abbe_result make(glowing *g, double excitation, double absorption, abbe_e
 
 static void drop(glowing *g) {
   abbe_spectrum_free(g->material.attenuation);
-  abbe_spectrum_free(g->material.fluorescence.excitation);
-  abbe_spectrum_free(g->material.fluorescence.emission);
+  abbe_fluorescence_free(&g->material.fluorescence);
 }
 
 static double y_of(double nm) {
@@ -49,16 +71,28 @@ static double y_of(double nm) {
   return xyz[1];
 }
 
+/* Y of a triangle of so many photons, over their energies. */
+static double triangle_y(double low_nm, double photons) {
+  enum { PARTS = 2000 };
+  double sum = 0;
+  for (int i = 0; i < PARTS; i++) {
+    const double share = (i + 0.5) / PARTS, nm = low_nm + share * (to_nm - from_nm);
+    sum += (2 - fabs(4 * share - 2)) / PARTS * photons / nm * y_of(nm);
+  }
+  return sum;
+}
+
 /* Of even light of Y = 1 from 440 to 640 nm, in *passes the Y of what does not excite; returns the
  * Y of what all the rest makes glow. Of a line, with Y = 1: that of its glow. Energy goes by the
  * photon. */
-static double seen(bool line, double *passes) {
+static double seen(const glowing *g, bool line, double *passes) {
   enum { PARTS = 2000 };
-  double glow = 0, quanta = 0, all = 0, excites = 0;
+  double glow = triangle_y(from_nm, yield), quanta = 0, all = 0, excites = 0;
+  if (g->matrix) glow = 0;
+  for (int i = 0; i < 2 && g->matrix; i++)
+    glow += triangle_y(rows[i].from_nm, row_yield(i, lit_nm));
   for (int i = 0; i < PARTS; i++) {
-    const double share = (i + 0.5) / PARTS, nm = from_nm + share * (to_nm - from_nm),
-                 even_nm = first_nm + share * (last_nm - first_nm);
-    glow += (2 - fabs(4 * share - 2)) / PARTS * yield / nm * y_of(nm);
+    const double even_nm = first_nm + (i + 0.5) / PARTS * (last_nm - first_nm);
     quanta += even_nm < excited_nm ? even_nm : 0;
     excites += even_nm < excited_nm ? y_of(even_nm) : 0;
     all += y_of(even_nm);
@@ -90,24 +124,25 @@ static double slab_radiance(const glowing *g, double thickness, double angle, bo
     sum += g->excitation * thickness / PARTS *
            exp(-g->excitation * depth / cos(angle) - g->absorption * out);
   }
-  return sum * seen(true, &passes) / (4 * ABBE_PI);
+  return sum * seen(g, true, &passes) / (4 * ABBE_PI);
 }
 
 static abbe_result add_slab(abbe_known_run *run, double excitation, double absorption, bool below,
-                            double from, abbe_error *error) {
+                            bool matrix, double from, abbe_error *error) {
   const double thickness = 0.01, angle = 30 / ABBE_KNOWN_DEGREES;
   char what[112];
   abbe_scene scene = {0};
-  glowing g = {.excitation = excitation};
+  glowing g = {0};
   abbe_known_setting row = {
       .what = what, .unit = "W/(m2 sr)", .reason = reason, .samples = 1 << 18, .channel = "Y"};
-  abbe_result result = make(&g, excitation, absorption, error);
+  abbe_result result = make(&g, excitation, absorption, matrix, error);
   row.exact = slab_radiance(&g, thickness, angle, below);
   row.slack = 3e-3 * row.exact;
   row.useful = 3e-2 * row.exact;
   abbe_number_format(what, sizeof what,
-                     "a slab of depth %.3g that glows, and %.3g of its own glow, from %s",
-                     excitation * thickness, absorption * thickness, below ? "behind" : "before");
+                     "a slab of depth %.3g that glows%s, and %.3g of its own glow, from %s",
+                     excitation * thickness, matrix ? " by a matrix" : "", absorption * thickness,
+                     below ? "behind" : "before");
   if (result == ABBE_OK)
     result = abbe_known_scene(
         &scene, error,
@@ -134,7 +169,7 @@ static abbe_result add_cube(abbe_known_run *run, double excitation, double from,
   glowing g = {0};
   abbe_known_setting row = {
       .what = what, .unit = "W/(m2 sr)", .reason = reason, .samples = 1 << 18, .channel = "Y"};
-  abbe_result result = make(&g, excitation, 0, error);
+  abbe_result result = make(&g, excitation, 0, false, error);
   row.exact = slab_radiance(&g, size, 0, false);
   row.slack = 3e-3 * row.exact;
   row.useful = 3e-2 * row.exact;
@@ -173,10 +208,11 @@ static const char floor_scene[] =
 
 /* Straight through the middle, in light of 1 W/(m2 sr) from all around: what is left of the light
  * behind, and what glows of all that comes to each place. */
-static double ball_radiance(double excitation, double radius) {
+static double ball_radiance(const glowing *g, double radius) {
   enum { PARTS = 400 };
+  const double excitation = g->excitation;
   double sum = 0, passes;
-  const double glow = seen(false, &passes);
+  const double glow = seen(g, false, &passes);
   for (int i = 0; i < PARTS; i++) {
     const double off = radius * (2 * (i + 0.5) / PARTS - 1);
     double around = 0; /* mean over directions */
@@ -190,31 +226,43 @@ static double ball_radiance(double excitation, double radius) {
   return passes + (1 - passes) * exp(-2 * excitation * radius) + sum * glow;
 }
 
+/* Photons by photon over the range, all absorbed alike up to the matrix's last row. */
+static double mean_yield(void) {
+  enum { PARTS = 2000 };
+  double photons = 0, all = 0;
+  for (int i = 0; i < PARTS; i++) {
+    const double nm = first_nm + (i + 0.5) / PARTS * (rows[1].nm - first_nm);
+    photons += nm * (row_yield(0, nm) + row_yield(1, nm));
+    all += nm;
+  }
+  return photons / all;
+}
+
 static abbe_result add_ball(abbe_known_run *run, double excitation, const char *channel,
-                            double from, abbe_error *error) {
+                            bool matrix, double from, abbe_error *error) {
   char what[112];
   abbe_scene scene = {0};
-  glowing g = {.excitation = excitation};
+  glowing g;
+  abbe_result result = make(&g, excitation, 0, matrix, error);
   const bool light = channel[0] == 'Y';
   abbe_known_setting row = {.what = what,
                             .unit = light ? "W/(m2 sr)" : "share",
-                            .reason = light ? reason : "single precision",
-                            .exact = light               ? ball_radiance(excitation, 0.1)
-                                     : channel[0] == 'y' ? yield
+                            .reason = light || matrix ? reason : "single precision",
+                            .exact = light               ? ball_radiance(&g, 0.1)
+                                     : channel[0] == 'y' ? (matrix ? mean_yield() : yield)
                                                          : 1,
                             .samples = 1 << 17,
                             .slack = 1e-6,
                             .useful = 2e-6,
                             .channel = channel};
-  if (light) row.slack = 3e-3 * row.exact;
-  if (light) row.useful = 3e-2 * row.exact;
+  if (light || matrix) row.slack = 3e-3 * row.exact;
+  if (light || matrix) row.useful = 3e-2 * row.exact;
   abbe_number_format(what, sizeof what,
                      light ? "a ball of depth %.3g that glows, in light from all around"
                      : channel[0] == 'y'
-                         ? "photons emitted in a ball of depth %.3g by those that it takes"
+                         ? "photons emitted in a ball of depth %.3g by those that it takes%s"
                          : "the ledger of a ball of depth %.3g: what left by what came and glowed",
-                     0.2 * excitation);
-  abbe_result result = make(&g, excitation, 0, error);
+                     0.2 * excitation, matrix ? ", by a matrix" : "");
   if (result == ABBE_OK)
     result = abbe_known_scene(&scene, error, "%s", light ? ball_scene : floor_scene);
   result = add(run, row, &g, result, &scene, from, error);
@@ -223,13 +271,15 @@ static abbe_result add_ball(abbe_known_run *run, double excitation, const char *
 }
 
 abbe_result abbe_known_fluorescent(abbe_known_run *run, abbe_error *error) {
-  ABBE_TRY(add_ball(run, 5, "yield", 0, error));
-  ABBE_TRY(add_ball(run, 5, "closed", 0.14, error));
-  ABBE_TRY(add_slab(run, 2, 0, false, 0.28, error));
-  ABBE_TRY(add_slab(run, 200, 150, false, 0.42, error));
-  ABBE_TRY(add_slab(run, 200, 150, true, 0.56, error));
-  ABBE_TRY(add_cube(run, 0.5, 0.64, error));
-  ABBE_TRY(add_cube(run, 100, 0.72, error));
-  ABBE_TRY(add_ball(run, 0.5, "Y", 0.78, error));
-  return add_ball(run, 10, "Y", 0.85, error);
+  ABBE_TRY(add_ball(run, 5, "yield", false, 0, error));
+  ABBE_TRY(add_ball(run, 5, "yield", true, 0.1, error));
+  ABBE_TRY(add_ball(run, 5, "closed", false, 0.2, error));
+  ABBE_TRY(add_slab(run, 2, 0, false, false, 0.3, error));
+  ABBE_TRY(add_slab(run, 2, 0, false, true, 0.4, error));
+  ABBE_TRY(add_slab(run, 200, 150, false, false, 0.5, error));
+  ABBE_TRY(add_slab(run, 200, 150, true, false, 0.6, error));
+  ABBE_TRY(add_cube(run, 0.5, 0.67, error));
+  ABBE_TRY(add_cube(run, 100, 0.74, error));
+  ABBE_TRY(add_ball(run, 0.5, "Y", false, 0.79, error));
+  return add_ball(run, 10, "Y", false, 0.85, error);
 }

@@ -18,11 +18,12 @@
 typedef struct abbe_glow {
   const abbe_spectral_sampling *sampling;
   size_t steps;
-  float *yield;   /* [refractors] 0: it does not glow */
-  float *excites; /* [refractors][steps + 1] share of what is absorbed at the steps' edges */
-  float
-      *emitted;  /* [refractors][steps + 1] share of its photons of shorter wavelengths than that */
-  float *chosen; /* the same of the wavelengths that paths of the camera go back to */
+  uint32_t *row;     /* [refractors][steps] of two rows of `emitted`, for what excites in a step: */
+  float (*yield)[2]; /* [refractors][steps] photons by photon that excites, by the first of the
+                        two and by the one after it */
+  float *excites;    /* [refractors][steps + 1] share of what is absorbed at the steps' edges */
+  float *emitted; /* [rows][steps + 1] share of a row's photons of shorter wavelengths than that */
+  float *chosen;  /* [refractors][steps + 1] the same of what paths of the camera go back to */
 } abbe_glow;
 
 /* Tables of the refractors, and of media what their paths need of them: extinctions, and
@@ -42,7 +43,14 @@ static inline float abbe_glow_rate(const abbe_media *m, int i, uint32_t k, float
   return share > 0 ? share * abbe_media_loss(m, i, k, f, d, wave) : 0;
 }
 
-/* The wavelength of a photon that refractor i emits, of u in [0, 1); false: none that is traced. */
+/* Photons that refractor i emits by photon that excites it within a step. */
+static inline double abbe_glow_photons(const abbe_glow *g, int i, uint32_t step) {
+  const float *yield = g->yield[(size_t)i * g->steps + step];
+  return (double)yield[0] + (double)yield[1];
+}
+
+/* The wavelength of a photon that refractor i emits, excited within *step, of u in [0, 1); false:
+ * none that is traced. */
 bool abbe_glow_emit(const abbe_glow *glow, int i, float u, uint32_t *step, float *within);
 
 /* Of a path of the camera that sees refractor i glow within *step: goes back, by u in [0, 1), to a

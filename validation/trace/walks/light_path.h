@@ -128,15 +128,16 @@ static inline void abbe_light_path_glow(const abbe_inner_rules *r, const abbe_me
   const size_t row = s->glows ? sampling->lights + light : light;
   const double nm = abbe_spectral_sampling_lambda(sampling, s->step, s->within);
   const double watts = (double)s->flux * (double)sampling->power[row * sampling->steps + s->step];
+  const double yield = abbe_glow_photons(g, medium, s->step);
   float random[4];
   abbe_random4(s->id, s->steps, r->pass, r->seed ^ 0x676c6f77u, random);
   ledger->excited += (double)(s->y * s->flux);
   ledger->quanta[0] += watts * nm;
-  ledger->quanta[1] += watts * nm * (double)g->yield[medium];
+  ledger->quanta[1] += watts * nm * yield;
   s->flux = 0;
   if (!abbe_glow_emit(g, medium, random[0], &s->step, &s->within)) return;
   const double to_nm = abbe_spectral_sampling_lambda(sampling, s->step, s->within);
-  s->flux = s->full = (float)(watts * (double)g->yield[medium] * nm / to_nm);
+  s->flux = s->full = (float)(watts * yield * nm / to_nm);
   s->y = sampling->xyz[(sampling->lights + light) * sampling->steps + s->step][1];
   s->glows = true;
   ledger->glowing += (double)(s->y * s->flux);

@@ -120,7 +120,7 @@ static void watch(abbe_tracer *t, double *mean, double *standard_error) {
 TEST(random_stones_close_their_ledger) {
   const int count = all_cases() ? 1000 : SANITIZED ? 2 : 8;
   uint64_t random = 46;
-  double off = 0, weight = 0;
+  double off = 0, weight = 0, worst = 0;
   for (int i = 0; i < count; i++) {
     char stone[1024];
     describe(&random, stone, sizeof stone);
@@ -150,19 +150,23 @@ TEST(random_stones_close_their_ledger) {
     const abbe_material *m = scene.object[0].material;
     const bool clear = m->attenuation == NULL && !abbe_material_is_fluorescent(m);
     /* a clear smooth box keeps for ever what glows outside of its six cones, 3 cos c - 2 at the
-       critical angle c: in diamond 0.74; a ball keeps less */
-    const bool bounded = l->lost <= 1e-4 * in + 0.75 * l->glowing;
+       critical angle c, and a ball cos c of what glows at its surface: in diamond 0.74 and 0.91 */
+    const double keeps = strstr(stone, "sphere") != NULL ? 0.92 : 0.75;
+    const bool bounded = l->lost <= 1e-4 * in + keeps * l->glowing;
     const bool right = fabs(out - in) <= 1e-6 * in && bounded &&
                        (!clear || fabs(mean - 1) <= 12 * standard_error + 1e-3);
     if (!right)
-      print_message("stone %d: %s: ledger %.9f, lost %.2g, radiance %.5f +- %.5f%s\n", i, stone,
-                    out / in, l->lost / in, mean, standard_error,
-                    desc.polarisation ? ", polarised" : "");
+      print_message(
+          "stone %d: %s: ledger %.9f, lost %.2g of it, %.2g glowed, radiance %.5f +- %.5f%s\n", i,
+          stone, out / in, l->lost / in, l->glowing / in, mean, standard_error,
+          desc.polarisation ? ", polarised" : "");
     assert_true(right);
+    worst = fmax(worst, fabs(out / in - 1));
     const double trust = 1 / (standard_error * standard_error + 1e-7);
     off += clear ? trust * (mean - 1) : 0;
     weight += clear ? trust : 0;
     abbe_tracer_free(t);
   }
+  print_message("%d ledgers are off by %.1e at most\n", count, worst);
   assert_near(off / weight, 0, 5 / sqrt(weight) + 2e-4);
 }
