@@ -206,6 +206,7 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
   MIX(h, plan->colouring);
   MIX(h, plan->filmed);
   MIX(h, plan->crystals);
+  MIX(h, plan->biaxial);
   MIX(h, plan->pleochroic);
   MIX(h, plan->glowing);
   return h;
@@ -320,6 +321,7 @@ static uint64_t mix_eye(uint64_t h, const abbe_scene *scene, const abbe_plan *pl
   MIX(h, d->receiver_samples);
   MIX(h, d->sample_shift);
   MIX(h, d->lens_place);
+  MIX(h, d->lens_turn);
   MIX(h, d->aovs);
   MIX(h, plan->textured);
   MIX(h, plan->receiver_colours);

@@ -175,6 +175,21 @@ static void place_on_lens(size_t i, size_t count, double out[2]) {
   out[1] = far * sin(turn);
 }
 
+/* One of the pictures of the mean: of one sample a pixel, which lies elsewhere in each, as no place
+ * is the same. */
+static abbe_render_desc take_place(size_t i, size_t count, bool jitters,
+                                   const abbe_render_desc *all) {
+  abbe_render_desc own = *all;
+  place_on_lens(i, count, own.lens_place);
+  own.aovs = false;
+  if (!jitters) return own;
+  own.supersample = own.receiver_samples = own.adaptive = 1;
+  own.lens_turn = count % 4 == 0 ? i + 1 : 0;
+  own.sample_shift[0] = fmod(0.7548776662 * ((double)i + 0.5), 1) - 0.5; /* [Roberts2018] */
+  own.sample_shift[1] = fmod(0.5698402910 * ((double)i + 0.5), 1) - 0.5;
+  return own;
+}
+
 /* Adds a share of the picture's first three channels, its colours. */
 static void add_colours(const abbe_image *image, double share, abbe_image *sum) {
   for (size_t i = 0; i < sum->width * sum->height; i++)
@@ -188,7 +203,7 @@ abbe_result abbe_renderer_read_blurred(abbe_renderer *r, const abbe_scene *scene
                                        abbe_render_progress progress, void *user, abbe_image *out,
                                        abbe_error *error) {
   const size_t count = r->plan.desc.lens;
-  abbe_render_desc own = *desc;
+  const bool jitters = r->plan.desc.supersample > 1 && r->plan.desc.upsample == 1;
   ABBE_TRY(abbe_renderer_read(r, aovs, out, error));
   if (!(scene->camera.aperture > 0) || count < 2 || r->method != NULL) return ABBE_OK;
   abbe_result result = ABBE_OK;
@@ -196,7 +211,7 @@ abbe_result abbe_renderer_read_blurred(abbe_renderer *r, const abbe_scene *scene
     memset(out->data + i * out->channels, 0, 3 * sizeof *out->data);
   for (size_t i = 0; i < count && result == ABBE_OK; i++) {
     abbe_image image = {0};
-    place_on_lens(i, count, own.lens_place);
+    const abbe_render_desc own = take_place(i, count, jitters, desc);
     result = abbe_renderer_change(r, scene, &own, error);
     if (result == ABBE_OK) result = abbe_renderer_frame(r, NULL, NULL, NULL, error);
     if (result == ABBE_OK) result = abbe_renderer_read(r, false, &image, error);

@@ -147,7 +147,10 @@ void choose_bands(out int base, out int count) {
 // every second band, its neighbours those between, of whose light each band has a share (camera_bands.h).
 #ifdef INTERLEAVES
 int taken_step(int count) { return count > 2 ? 2 : 1; }
-int first_taken(ivec2 at, int count) { return count > 2 ? (at.x ^ at.y) & 1 : 0; }
+int first_taken(ivec2 at, int count) {
+  ivec2 place = SAMPLE_AT(at);
+  return count > 2 ? (place.x ^ place.y) & 1 : 0;
+}
 #else
 int taken_step(int count) { return 1; }
 int first_taken(ivec2 at, int count) { return 0; }

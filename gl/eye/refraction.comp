@@ -115,14 +115,33 @@ int refractor;  // that this thread's pixel shows
 
 // SHARES_SPECTRUM: the samples of a pixel share the spectrum, each with wavelengths of its own. Neighbours
 // take places far from each other.
+#ifdef SHARES_SPECTRUM
+uniform ivec2 sample_turn;  // other samples' shares, for another picture of a mean
+#define SAMPLE_AT(at) ((at) + sample_turn)
+#else
+#define SAMPLE_AT(at) (at)
+#endif
+
 int band_set_of(ivec2 at) {
 #ifdef SHARES_SPECTRUM
-  int x = at.x & 1, y = at.y & 1;
+  int x = SAMPLE_AT(at).x & 1, y = SAMPLE_AT(at).y & 1;
   return 1 + 2 * x + 3 * y - 4 * x * y;
 #else
   return 0;
 #endif
 }
+
+#ifdef CRYSTALS
+// Waves that a ray is followed as, from the first. SHARES_WAVES: the samples of a pixel take one each.
+#ifdef SHARES_WAVES
+const int WAVES = 1;
+int first_wave_of(ivec2 at) { return SAMPLE_AT(at).y & 1; }
+#else
+const int WAVES = 2;
+int first_wave_of(ivec2 at) { return 0; }
+#endif
+int first_wave;
+#endif
 
 ivec2 pixel_of(uint listed) {
   return ivec2(listed & 0xffffu, listed >> 16);
@@ -227,7 +246,8 @@ void aim_at(ivec2 at) {
   vec3 o, beside;
   refractor = int(texelFetch(eye_owner, at, 0).x) - 1;
 #ifdef CRYSTALS
-  path_place = vec2(at);
+  path_place = vec2(SAMPLE_AT(at));
+  first_wave = first_wave_of(at);
 #endif
   band_set = band_set_of(at);
   view_ray(camera_view(), (vec2(at) + 0.5) / eye_samples, o, sight);

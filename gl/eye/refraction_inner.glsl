@@ -58,7 +58,7 @@ vec3 seen_outside(vec3 p, vec3 d, Spread spread) {
 // What a path has passed: the depth of its band's parts, or metres.
 #ifdef PLEOCHROIC
 #define Passed Depth
-#define PASSED(metres) ((metres) * wave_attenuation(crystal, refractor, ray.wave, ray.k))
+#define PASSED(metres) ((metres) * wave_attenuation(crystal, along_axes, ray.wave, ray.k))
 #define WEIGHT_AFTER(passed) band_left(passed)
 #define DEPTH_OF(passed) (passed)
 #else
@@ -85,6 +85,9 @@ vec3 through(Hit front, vec3 d) {
   vec2 spectrum = refractor_spectrum(refractor);
   float n = spectrum.x;
   Passed path = Passed(0.0);
+#ifdef PLEOCHROIC
+  AxisDepths along_axes = axis_depths(refractor);
+#endif
 #ifdef BAND_PARTS
   Depth per_m = attenuation_of(refractor);
   float least_per_m = least_of(per_m);

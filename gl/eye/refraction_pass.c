@@ -39,11 +39,19 @@ static bool refines(const abbe_refraction_pass *pass) {
  * times as many wavelengths between them. */
 static bool shares_spectrum(const abbe_refraction_pass *pass) {
   const abbe_render_desc *desc = &scene_of(pass)->plan->desc;
-  return desc->supersample > 1 && desc->wavelengths > 1 && !is_coarse(pass);
+  return (desc->supersample > 1 || desc->lens_turn > 0) && desc->wavelengths > 1 &&
+         !is_coarse(pass);
 }
 
 static bool interleaves(const abbe_refraction_pass *pass) {
   return shares_spectrum(pass) && abbe_camera_bands_interleave(scene_of(pass)->plan);
+}
+
+/* They share the waves of crystals where as many may take each. */
+static bool shares_waves(const abbe_refraction_pass *pass) {
+  const abbe_plan *plan = scene_of(pass)->plan;
+  return shares_spectrum(pass) && plan->crystals &&
+         (plan->desc.supersample % 2 == 0 || plan->desc.lens_turn > 0);
 }
 
 /* Pixels a side for a sample of receivers; 1: both have as many. */
@@ -105,14 +113,15 @@ static abbe_result make_list(abbe_refraction_pass *pass, const abbe_shader_varia
 static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_variant *variant,
                                  abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  char facts[256], refined[256], shares[128];
+  char facts[256], refined[256], shares[192];
   abbe_shader_variant camera = *variant;
   camera.exits = exits_of(pass);
-  char shown[96];
+  char shown[112];
   snprintf(shown, sizeof shown, "%s%s", shows_receivers(pass) ? "#define SHOWN_RECEIVERS\n" : "",
            abbe_shader_variant_waves(scene_of(pass)->plan));
-  snprintf(shares, sizeof shares, "%s%s", shown,
-           shares_spectrum(pass) ? "#define SHARES_SPECTRUM\n" : "");
+  snprintf(shares, sizeof shares, "%s%s%s", shown,
+           shares_spectrum(pass) ? "#define SHARES_SPECTRUM\n" : "",
+           shares_waves(pass) ? "#define SHARES_WAVES\n" : "");
   if (refines(pass))
     snprintf(facts, sizeof facts, "%s#define REFINES\n#define COARSE_BANDS %d\n", shares,
              COARSE_BANDS);
@@ -296,6 +305,8 @@ static void use(abbe_refraction_pass *pass, GLuint program) {
   abbe_gpu_bind_texture(gpu, program, "eye_owner", 6, pass->owner);
   abbe_gpu_bind_array(gpu, program, "eye_receivers", UNIT_SEEN_RECEIVERS,
                       pass->shown != 0 ? pass->shown : pass->receivers->colour);
+  const GLint turn = (GLint)scene_of(pass)->plan->desc.lens_turn;
+  gpu->gl->Uniform2i(gpu->gl->GetUniformLocation(program, "sample_turn"), turn, turn / 2);
   abbe_gpu_set_float(gpu, program, "share_limit", share_of(pass));
   abbe_gpu_set_float(gpu, program, "pixel_angle", pixel_angle(pass->lighting->camera));
   if (scene_of(pass)->plan->multi_refractor_paths)
@@ -429,6 +440,7 @@ static void tell_paths(const abbe_refraction_pass *pass, abbe_camera_paths *p) {
                            .pixel_angle = (float)pixel_angle(camera),
                            .eye_bands = (int)pass->eye_bands,
                            .exits = (int)exits_of(pass),
+                           .sample_turn = (int)scene->plan->desc.lens_turn,
                            .shares_spectrum = shares_spectrum(pass),
                            .interleaves = interleaves(pass)};
   abbe_view_pack(&camera->view, p->eye_view);

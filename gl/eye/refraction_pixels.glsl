@@ -6,16 +6,17 @@ vec3 band_light(int band, out float mirrored) {
 #ifdef CRYSTALS
   vec3 light = vec3(0);
   float passed = 0.0, reflected = 0.0;
+  const float EACH = 2.0 / float(WAVES);
   crystal = crystal_of(refractor);
-  for (wave = 0; wave < 2; wave++) {
+  for (wave = first_wave; wave < first_wave + WAVES; wave++) {
 #ifdef KEEPS_SIGHTS
     uint before = sight_chain;
 #endif
-    light += through(front, sight);
-    passed += wave_share;
-    reflected += wave_mirrored;
+    light += EACH * through(front, sight);
+    passed += EACH * wave_share;
+    reflected += EACH * wave_mirrored;
 #ifdef KEEPS_SIGHTS
-    weigh_sights(before, sight_tail);
+    weigh_sights(before, EACH * sight_tail);
     sight_tail = vec3(1);
 #endif
   }

@@ -115,17 +115,18 @@ vec3 band_light(int band, bool in_mirror, bool both, out float mirrored) {
   take_band(band_set, band - first_band(refractor));
 #ifdef CRYSTALS
   vec3 light = vec3(0);
+  const float EACH = 1.0 / float(WAVES);
   float once;
   mirrored = 0.0;
-  for (int wave = 0; wave < 2; wave++) {  // half of the light could become either
+  for (int wave = first_wave; wave < first_wave + WAVES; wave++) {  // half of the light could become either
     start.wave = wave;
 #ifdef KEEPS_SIGHTS
     uint before = sight_chain;
 #endif
-    light += 0.5 * path_light(in_mirror, both, once);
-    mirrored += 0.5 * once;
+    light += EACH * path_light(in_mirror, both, once);
+    mirrored += EACH * once;
 #ifdef KEEPS_SIGHTS
-    weigh_sights(before, 0.5 * sight_tail);
+    weigh_sights(before, EACH * sight_tail);
     sight_tail = vec3(1);
 #endif
   }

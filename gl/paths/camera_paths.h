@@ -17,6 +17,7 @@ typedef struct abbe_camera_paths {
   float eye_view[24], eye_samples[2], share_limit, pixel_angle;
   int eye_bands, exits;
   bool shares_spectrum, interleaves;
+  int sample_turn; /* as render_desc.h's lens_turn */
 } abbe_camera_paths;
 
 typedef struct abbe_sight_buffers {

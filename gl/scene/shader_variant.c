@@ -150,9 +150,11 @@ static void print_photons(FILE *to, const abbe_shader_variant *v) {
 }
 
 const char *abbe_shader_variant_waves(const abbe_plan *plan) {
-  return plan->pleochroic ? "#define CRYSTALS\n#define PLEOCHROIC\n"
-         : plan->crystals ? "#define CRYSTALS\n"
-                          : "";
+  static const char *const text[2][2] = {
+      {"#define CRYSTALS\n#define UNIAXIAL\n",
+       "#define CRYSTALS\n#define UNIAXIAL\n#define PLEOCHROIC\n"},
+      {"#define CRYSTALS\n", "#define CRYSTALS\n#define PLEOCHROIC\n"}};
+  return plan->crystals ? text[plan->biaxial][plan->pleochroic] : "";
 }
 
 char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *more) {

@@ -256,6 +256,7 @@ abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_mate
   if (range.least_per_m != range.most_per_m) plan->tinting = true;
   if (range.most_per_m > 0) plan->absorbing = true;
   if (abbe_material_is_crystal(material)) plan->crystals = true;
+  if (abbe_material_is_biaxial(material)) plan->biaxial = true;
   if (abbe_material_is_pleochroic(material)) plan->pleochroic = true;
   if (abbe_material_is_fluorescent(material)) plan->glowing = true;
   bool noted = false;

@@ -110,7 +110,7 @@ typedef struct abbe_plan_entry {
 /* A light, or a face of the cube around one whose refractors do not fit one view. */
 typedef struct abbe_light_view {
   size_t light; /* the scene's */
-  int face; /* that it looks through (gl/plan/examine/examine.h); -1: it is no part of a cube */
+  int face;     /* that it looks through (gl/plan/examine/examine.h); -1: it is no part of a cube */
   unsigned faces; /* whose light it carries, a bit each: its own; the first of a cube also has all
                      those through which no light reaches a refractor; without a cube, all */
 } abbe_light_view;
@@ -217,6 +217,7 @@ typedef struct abbe_plan {
   bool colouring;  /* some mirror's reflectance varies */
   bool filmed;     /* some refractor has films on faces that are drawn */
   bool crystals;   /* it has several indices: the camera follows both waves */
+  bool biaxial;    /* of such some have three */
   bool pleochroic; /* it attenuates by the direction of the light's field */
   bool glowing;    /* it is fluorescent, and its glow is drawn */
   bool tinted_air; /* the air's absorption or scattering varies */

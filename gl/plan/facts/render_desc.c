@@ -342,7 +342,7 @@ const abbe_render_setting abbe_render_settings[] = {
      .what = "the adaptive sampling", .default_ = "4; thesis, and with --upsample, 1",
      .help = "N x N rays for a sample of a receiver where its light bends"},
     {COUNT(lens, 1, ABBE_RENDER_MAX_LENS), .option = "lens", .aside = true,
-     .what = "the number of places on the lens", .default_ = "32; published profiles 1",
+     .what = "the number of places on the lens", .default_ = "16; published profiles 1",
      .help =
          "of a camera with an aperture, places on it that the picture is seen from; 1 is sharp"},
     {COUNT(receiver_samples, 1, 4), .option = "receiver-samples", .aside = true,

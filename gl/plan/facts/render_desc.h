@@ -62,7 +62,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 #define ABBE_PLAN_MAP 1024
 #define ABBE_PLAN_SAMPLES 2
 #define ABBE_PLAN_ADAPTIVE 4
-#define ABBE_PLAN_LENS 32
+#define ABBE_PLAN_LENS 16
 #define ABBE_PLAN_ENVIRONMENT_LIGHTS 4
 #define ABBE_PLAN_LIGHT_POINTS 8
 #define ABBE_PLAN_PINHOLES 256
@@ -157,10 +157,13 @@ typedef struct abbe_render_desc {
    * Pinholes are other ones for each shift of the grid. */
   double photon_shift[2], sample_shift[2];
   /* Places on the pupil of a camera with an aperture whose pictures abbe_renderer_read_blurred
-   * takes the mean of, 1 to ABBE_RENDER_MAX_LENS, 0: 32; and the one that a frame is seen from, in
-   * the pupil's radii to the right and up: 0, 0 is its middle. */
+   * takes the mean of, 1 to ABBE_RENDER_MAX_LENS, 0: 16; and the one that a frame is seen from, in
+   * the pupil's radii to the right and up: 0, 0 is its middle. lens_turn: above 0, the frame's
+   * number among four or a multiple of four, whose samples share the spectrum and a crystal's waves
+   * as a pixel's do. */
   size_t lens;
   double lens_place[2];
+  size_t lens_turn;
   bool everything;               /* all on, to measure what the plan saves (gl/plan/plan.h) */
   bool aovs;                     /* keep direct and caustic light of the receivers apart as well */
   abbe_render_progress progress; /* while the renderer is made: photons are traced once to fit */

@@ -30,6 +30,8 @@ Depth parts_at(int texel) {
 Depth attenuation_of(int r) { return parts_at(2 * (first_band(r) + band_at)); }
 
 #ifdef PLEOCHROIC
+struct AxisDepths { Depth x, y, z; };  // 1/m, of fields along them
+
 Depth attenuation_along(int axis, int r) {
   return parts_at((2 * REFRACTORS + 6) * BAND_SETS * counts.bands + 2 * (first_band(axis * REFRACTORS + r) + band_at));
 }
@@ -81,9 +83,21 @@ Crystal crystal_of(int r) {
 #endif
 
 #ifdef PLEOCHROIC
-Depth wave_attenuation(Crystal c, int r, int wave, vec3 k) {
+AxisDepths axis_depths(int r) {
+  return AxisDepths(attenuation_along(0, r), attenuation_along(1, r), attenuation_along(2, r));
+}
+
+Depth wave_attenuation(Crystal c, AxisDepths per_m, int wave, vec3 k) {
   vec3 shares = axis_shares(c, wave, k);
-  return shares.x * attenuation_along(0, r) + shares.y * attenuation_along(1, r) + shares.z * attenuation_along(2, r);
+#ifdef UNIAXIAL
+  return shares.x * per_m.x + shares.z * per_m.z;
+#else
+  return shares.x * per_m.x + shares.y * per_m.y + shares.z * per_m.z;
+#endif
+}
+
+Depth wave_attenuation(Crystal c, int r, int wave, vec3 k) {
+  return wave_attenuation(c, axis_depths(r), wave, k);
 }
 #endif
 

@@ -1,4 +1,4 @@
-// CRYSTALS: the two waves of crystals, and their faces. A wave's vector k, which is its normal times its index, keeps its
+// CRYSTALS: the two waves of crystals, and their faces. UNIAXIAL: of two indices all of them, along z the other one. A wave's vector k, which is its normal times its index, keeps its
 // part along a face; light goes along the ray, at right angles to the surface of all such vectors [BornWolf1999, 15].
 // Faces reflect by Fresnel's formulas for the wave's own index, field by field: shares are right to the first order of
 // the difference of indices, directions are exact. Who includes this gives
@@ -23,6 +23,18 @@ Crystal make_crystal(vec3 z, vec3 x, vec4 row) {
 // Glass has no axes.
 bool is_crystal(Crystal c) { return c.z != vec3(0); }
 
+#ifdef UNIAXIAL
+// The wave that leaves a face along u, of so much of its vector along the face; false: it does not travel. Wave 0 is
+// the ordinary one. The vectors of each end on an ellipsoid about z.
+bool wave_from(Crystal c, int wave, vec3 along, vec3 u, out vec3 k, out vec3 ray) {
+  float all = wave == 0 ? c.inverse.x : c.inverse.z, on_z = c.inverse.x - all, u_z = dot(u, c.z), along_z = dot(along, c.z);
+  float squared = all + on_z * u_z * u_z, half_linear = on_z * u_z * along_z;
+  float left = half_linear * half_linear - squared * (all * dot(along, along) + on_z * along_z * along_z - 1.0);
+  k = along + (sqrt(max(left, 0.0)) - half_linear) / squared * u;
+  ray = normalize(all * k + on_z * dot(k, c.z) * c.z);
+  return left > 0.0 && dot(ray, u) > 1e-4;
+}
+#else
 // 1 for vectors of that wave: 0 or 1, of two indices the ordinary and the extraordinary one. slope: the way in which it
 // grows, along the ray.
 float wave_surface(Crystal c, int wave, vec3 k, out vec3 slope) {
@@ -47,6 +59,7 @@ bool wave_from(Crystal c, int wave, vec3 along, vec3 u, out vec3 k, out vec3 ray
   ray = normalize(slope);
   return dot(ray, u) > 1e-4 && abs(value - 1.0) < 1e-3;
 }
+#endif
 
 vec3 across_of(vec3 v) { return normalize(cross(v, abs(v.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0))); }
 
@@ -62,10 +75,14 @@ vec3 displacement(Crystal c, int wave, vec3 k) {
   return wave == 0 ? d : cross(s, d);
 }
 
+vec3 across_incidence(vec3 k, vec3 n) {
+  vec3 across = cross(k, n);
+  return dot(across, across) > 1e-10 ? normalize(across) : across_of(n);
+}
+
 // The field's parts across the plane of incidence, and in it; of unpolarised light in glass, as much of both.
 vec2 field_parts(Crystal c, int wave, vec3 k, vec3 n) {
-  vec3 across = cross(k, n), d = displacement(c, wave, k);
-  across = dot(across, across) > 1e-10 ? normalize(across) : across_of(n);
+  vec3 across = across_incidence(k, n), d = displacement(c, wave, k);
   return is_crystal(c) ? vec2(dot(d, across), dot(d, cross(normalize(k), across))) : vec2(sqrt(0.5));
 }
 
@@ -120,7 +137,14 @@ vec2 wave_film_shares(Crystal c, int r, int film, bool outside, float cos_i, flo
 #ifdef PLEOCHROIC
 // Shares of the attenuations along x, y and z in that of a wave, by a metre of its ray.
 vec3 axis_shares(Crystal c, int wave, vec3 k) {
+#ifdef UNIAXIAL
+  float k2 = dot(k, k), k_z = dot(k, c.z), on_z = wave == 0 ? 0.0 : 1.0 - k_z * k_z / k2;
+  vec2 field2 = c.inverse.xz * c.inverse.xz * vec2(1.0 - on_z, on_z);
+  vec2 shares = sqrt(k2 / (field2.x + field2.y)) * field2 * inversesqrt(c.inverse.xz);
+  return vec3(shares.x, 0, shares.y);
+#else
   vec3 d = displacement(c, wave, k), field = c.inverse * vec3(dot(d, c.x), dot(d, cross(c.z, c.x)), dot(d, c.z));
   return length(k) / length(field) * field * field * inversesqrt(c.inverse);
+#endif
 }
 #endif
