@@ -30,8 +30,10 @@ float fresnel_conductor(float cos_i, float n, float k) {
   // a + i b is the root of below + i twice: the smaller of both by their product, n k
   float larger = sqrt(0.5 * (size + abs(below))), smaller = 0.5 * twice / max(larger, 1e-20);
   vec2 root = below < 0.0 ? vec2(smaller, larger) : vec2(larger, smaller);
-  float t1 = size + c * c, t2 = 2.0 * c * root.x;
-  float s = (t1 - t2) / (t1 + t2), q = c * c * size + s2 * s2, p = (q - t2 * s2) / (q + t2 * s2);
+  // squares of root -+ c and of c root -+ s2, which cancel nowhere
+  vec2 less = root - vec2(c, 0), more = root + vec2(c, 0);
+  vec2 less_p = c * root - vec2(s2, 0), more_p = c * root + vec2(s2, 0);
+  float s = dot(less, less) / dot(more, more), p = dot(less_p, less_p) / dot(more_p, more_p);
   return c == 0.0 ? 1.0 : clamp(0.5 * s * (1.0 + p), 0.0, 1.0);
 }
 #endif

@@ -6,7 +6,7 @@
 #include "base/maths.h"
 #include "spectral/biaxial.h"
 
-enum { RAYS = 200 };
+enum { RAYS = 20000 };
 
 /* a: unit direction of the light in air, the face's normal is z; what is asked. */
 static const char source[] =
