@@ -14,6 +14,7 @@ foreach(name
     gem_ascent gem_grid_file gem_maps gem_optimum gem_slope gem_tilts gem_view
     guide_sums map_texels
     field
+    surrogate
     file_comparison
     flip
     geometry

@@ -66,6 +66,28 @@ void abbe_cut_free(abbe_cut *cut) {
   memset(cut, 0, sizeof *cut);
 }
 
+void abbe_cut_copy_free(abbe_cut *copy) {
+  free(copy->tier);
+  free(copy->facet);
+  *copy = (abbe_cut){0};
+}
+
+abbe_result abbe_cut_copy(const abbe_cut *cut, abbe_cut *out, abbe_error *error) {
+  abbe_cut own = *cut;
+  own.tier = malloc(cut->tier_count * sizeof *own.tier);
+  own.facet = malloc(cut->facet_count * sizeof *own.facet);
+  if (own.tier == NULL || own.facet == NULL) {
+    abbe_cut_copy_free(&own);
+    *out = own;
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a design of %zu facets",
+                          cut->facet_count);
+  }
+  memcpy(own.tier, cut->tier, cut->tier_count * sizeof *own.tier);
+  memcpy(own.facet, cut->facet, cut->facet_count * sizeof *own.facet);
+  *out = own;
+  return ABBE_OK;
+}
+
 /* Makes capacity for one more than count, doubled as it fills; NULL without memory. */
 static void *grow(void *list, size_t count, size_t size) {
   const bool full = (count & (count - 1)) == 0;

@@ -50,6 +50,12 @@ typedef struct abbe_cut {
 /* Safe on a zeroed cut. */
 void abbe_cut_free(abbe_cut *cut);
 
+/* A cut with tiers and facets of its own, whose names and texts are the other's. ABBE_NO_MEMORY;
+ * the caller frees it with abbe_cut_copy_free alone. */
+abbe_result abbe_cut_copy(const abbe_cut *cut, abbe_cut *out, abbe_error *error);
+/* Safe on a zeroed one. */
+void abbe_cut_copy_free(abbe_cut *copy);
+
 /* Begins a tier behind the others. ABBE_NO_MEMORY. */
 abbe_result abbe_cut_add_tier(abbe_cut *cut, double angle_deg, double distance, abbe_error *error);
 /* A facet of the last tier, of which only the index is set. ABBE_UNSUPPORTED beyond

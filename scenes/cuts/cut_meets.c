@@ -331,25 +331,17 @@ static abbe_result settle(work *w, const double *change, abbe_cut_polyhedron *mo
 abbe_result abbe_cut_meets_move(abbe_cut *cut, const abbe_cut_polyhedron *p, const double *change,
                                 abbe_cut_polyhedron *moved, abbe_error *error) {
   work w;
-  abbe_cut own = *cut;
-  ABBE_TRY(work_make(cut, p, &w, error));
-  abbe_result result = ABBE_OK;
-  own.tier = malloc(cut->tier_count * sizeof *own.tier);
-  own.facet = malloc(cut->facet_count * sizeof *own.facet);
-  if (own.tier == NULL || own.facet == NULL)
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a design");
+  abbe_cut own;
+  ABBE_TRY(abbe_cut_copy(cut, &own, error));
+  abbe_result result = work_make(&own, p, &w, error);
   if (result == ABBE_OK) {
-    memcpy(own.tier, cut->tier, cut->tier_count * sizeof *own.tier);
-    memcpy(own.facet, cut->facet, cut->facet_count * sizeof *own.facet);
-    w.cut = &own;
     result = settle(&w, change, moved, error);
+    work_free(&w);
   }
   if (result == ABBE_OK) {
     memcpy(cut->tier, own.tier, cut->tier_count * sizeof *own.tier);
     memcpy(cut->facet, own.facet, cut->facet_count * sizeof *own.facet);
   }
-  free(own.tier);
-  free(own.facet);
-  work_free(&w);
+  abbe_cut_copy_free(&own);
   return result;
 }

@@ -4,6 +4,7 @@
 #include "scenes/cuts/cut_meets.h"
 #include "scenes/cuts/cut_stretch.h"
 #include "validation/measure/gem/gem_slope.h"
+#include "validation/measure/surrogate.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -30,12 +31,10 @@ typedef struct work {
   const abbe_weights *weights;
   const abbe_gem_ascent_desc *q;
   size_t scalars, evaluations;
-  bool tiers; /* and not the two angles */
 } work;
 
 static void place_free(place *p) {
-  free(p->cut.tier);
-  free(p->cut.facet);
+  abbe_cut_copy_free(&p->cut);
   abbe_cut_polyhedron_free(&p->polyhedron);
   free(p->gradient);
   free(p->free);
@@ -44,23 +43,6 @@ static void place_free(place *p) {
 
 static abbe_result no_memory(abbe_error *error) {
   return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a search of angles");
-}
-
-/* Tiers and facets of its own. */
-static abbe_result copy_cut(const abbe_cut *cut, abbe_cut *out, abbe_error *error) {
-  *out = *cut;
-  out->tier = malloc(cut->tier_count * sizeof *out->tier);
-  out->facet = malloc(cut->facet_count * sizeof *out->facet);
-  if (out->tier == NULL || out->facet == NULL) {
-    free(out->tier);
-    free(out->facet);
-    out->tier = NULL;
-    out->facet = NULL;
-    return no_memory(error);
-  }
-  memcpy(out->tier, cut->tier, cut->tier_count * sizeof *out->tier);
-  memcpy(out->facet, cut->facet, cut->facet_count * sizeof *out->facet);
-  return ABBE_OK;
 }
 
 /* ---- the light of a design ---- */
@@ -109,7 +91,7 @@ static abbe_result by_side(const place *p, const abbe_gem_stone *stone, int side
   abbe_result result = ABBE_OK;
   for (int i = 0; i < 2 && result == ABBE_OK; i++) {
     const double factor = tan(angle + (i == 0 ? -h : h)) / tan(angle);
-    result = copy_cut(&p->cut, &moved[i], error);
+    result = abbe_cut_copy(&p->cut, &moved[i], error);
     if (result == ABBE_OK)
       result = abbe_cut_stretch_apply(&moved[i], &p->polyhedron, side == 0 ? factor : 1,
                                       side == 1 ? factor : 1, error);
@@ -121,10 +103,7 @@ static abbe_result by_side(const place *p, const abbe_gem_stone *stone, int side
     by[f][3] = (high->d - low->d) / (2 * h);
     to_stone(stone, by[f]);
   }
-  for (int i = 0; i < 2; i++) {
-    free(moved[i].tier);
-    free(moved[i].facet);
-  }
+  for (int i = 0; i < 2; i++) abbe_cut_copy_free(&moved[i]);
   return result;
 }
 
@@ -160,20 +139,6 @@ static abbe_result derive(const place *p, const abbe_gem_stone *stone, const abb
 
 /* ---- places ---- */
 
-/* Which combinations of scalars are free there. */
-static abbe_result find_free(const work *w, place *p, abbe_error *error) {
-  abbe_cut_meets meets = {.scalars = 2, .freedoms = 2};
-  if (w->tiers)
-    ABBE_TRY(abbe_cut_meets_make(&p->cut, &p->polyhedron, &meets, error));
-  else if ((meets.free = calloc(4, sizeof *meets.free)) == NULL)
-    return no_memory(error);
-  else
-    meets.free[0] = meets.free[3] = 1;
-  p->free = meets.free;
-  p->freedoms = meets.freedoms;
-  return ABBE_OK;
-}
-
 /* What of a combination is free. */
 static void make_free(const work *w, const place *p, double *direction) {
   double *sum = calloc(w->scalars, sizeof *sum);
@@ -200,55 +165,35 @@ static abbe_result look(work *w, place *p, abbe_error *error) {
   abbe_result result = follow(w, p, &stone, &slope, error);
   if (result == ABBE_OK) {
     p->value = sign * slope.value.value;
-    result = derive(p, &stone, &slope, w->tiers, by, error);
+    result = derive(p, &stone, &slope, true, by, error);
     abbe_gem_slope_free(&slope);
     abbe_gem_stone_free(&stone);
   }
-  if (result == ABBE_OK) result = find_free(w, p, error);
+  abbe_cut_meets meets = {0};
+  if (result == ABBE_OK) result = abbe_cut_meets_make(&p->cut, &p->polyhedron, &meets, error);
+  p->free = meets.free;
+  p->freedoms = meets.freedoms;
   for (size_t s = 0; s < w->scalars; s++) p->gradient[s] = sign * by[s].value;
   if (result == ABBE_OK) make_free(w, p, p->gradient);
   free(by);
   return result;
 }
 
-static double clamp(double x, double low, double high) {
-  return fmin(fmax(x, low), high);
-}
-
-/* The two angles, which stay in their ranges. */
-static abbe_result stretch(const work *w, const place *from, const double angle[2], place *to,
-                           abbe_error *error) {
-  const abbe_gem_optimum_desc *s = &w->q->search;
-  const double crown = clamp(angle[0], s->crown_from_rad, s->crown_to_rad);
-  const double pavilion = clamp(angle[1], s->pavilion_from_rad, s->pavilion_to_rad);
-  ABBE_TRY(abbe_cut_stretch_to(&to->cut, &from->polyhedron, crown / ABBE_DEGREE,
-                               pavilion / ABBE_DEGREE, error));
-  return abbe_cut_polyhedron_make(&to->cut, 0, &to->polyhedron, error);
-}
-
-static void angles_of(const place *p, double angle[2]) {
-  angle[0] = ABBE_DEGREE * abbe_cut_stretch_main_deg(&p->cut, &p->polyhedron, ABBE_CUT_CROWN);
-  angle[1] = ABBE_DEGREE * abbe_cut_stretch_main_deg(&p->cut, &p->polyhedron, ABBE_CUT_PAVILION);
-}
-
 /* The design that lies by so much off another. */
-static abbe_result go(const work *w, const place *from, const double *change, place *to,
-                      abbe_error *error) {
+static abbe_result go(const place *from, const double *change, place *to, abbe_error *error) {
   *to = (place){0};
-  abbe_result result = copy_cut(&from->cut, &to->cut, error);
-  if (result == ABBE_OK && w->tiers)
+  abbe_result result = abbe_cut_copy(&from->cut, &to->cut, error);
+  if (result == ABBE_OK)
     result = abbe_cut_meets_move(&to->cut, &from->polyhedron, change, &to->polyhedron, error);
-  if (result == ABBE_OK && !w->tiers) {
-    double angle[2];
-    angles_of(from, angle);
-    for (int k = 0; k < 2; k++) angle[k] += change[k];
-    result = stretch(w, from, angle, to, error);
-  }
   if (result != ABBE_OK) place_free(to);
   return result;
 }
 
 /* ---- uphill ---- */
+
+static double clamp(double x, double low, double high) {
+  return fmin(fmax(x, low), high);
+}
 
 static double dot(const double *a, const double *b, size_t count) {
   double sum = 0;
@@ -301,7 +246,7 @@ static abbe_result climb(work *w, place *at, size_t most, abbe_error *error) {
     const double length = sqrt(dot(direction, direction, n));
     for (size_t s = 0; s < n; s++) change[s] = length > 0 ? direction[s] / length * step : 0;
     place next = {0};
-    if (!(length > 0) || go(w, at, change, &next, NULL) != ABBE_OK) {
+    if (!(length > 0) || go(at, change, &next, NULL) != ABBE_OK) {
       step *= length > 0 ? 0.5 : 0;
       continue;
     }
@@ -325,13 +270,6 @@ static abbe_result climb(work *w, place *at, size_t most, abbe_error *error) {
 
 /* ---- searches ---- */
 
-enum { ACROSS = 4, STARTS = ACROSS * ACROSS, WAYS = 2 };
-
-static int better_first(const void *a, const void *b) {
-  const double x = ((const place *)a)->value, y = ((const place *)b)->value;
-  return (x < y) - (x > y);
-}
-
 /* The measure itself, as a search by a grid has it. */
 static abbe_result judge(work *w, const place *p, abbe_gem_number *out, abbe_error *error) {
   abbe_gem_stone stone;
@@ -354,39 +292,124 @@ static bool tell(const work *w, double done) {
   return s->progress == NULL || s->progress(s->user, done);
 }
 
-/* Places all over the ranges; uphill from the best of them; and the best of these. */
-static abbe_result search_pair(work *w, const place *design, abbe_gem_ascent *out, place *best,
-                               abbe_error *error) {
+/* Of two angles so many stones are followed, the first in a square of these, and others until
+ * there, where the process is unsure. So many of the best are judged, and what lies beside the best
+ * of these. */
+enum { PAIRS = 34, ACROSS = 3, UNSURE = 22, JUDGED = 4, BESIDE = 4 };
+
+/* The design at a place of both ranges. */
+static abbe_result pair_at(const work *w, const place *design, const double x[2], place *to,
+                           abbe_error *error) {
   const abbe_gem_optimum_desc *s = &w->q->search;
-  const size_t most = 11;
-  place start[STARTS] = {0};
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < STARTS && result == ABBE_OK; i++) {
-    const double across = (i % ACROSS + 0.5) / ACROSS,
-                 up = ((i / ACROSS) + 0.5) / ACROSS; /* cells' middles */
-    const double angle[2] = {s->crown_from_rad + across * (s->crown_to_rad - s->crown_from_rad),
-                             s->pavilion_from_rad +
-                                 up * (s->pavilion_to_rad - s->pavilion_from_rad)};
-    result = copy_cut(&design->cut, &start[i].cut, error);
-    if (result == ABBE_OK) result = stretch(w, design, angle, &start[i], error);
-    if (result == ABBE_OK) result = look(w, &start[i], error);
-    if (result == ABBE_OK && !tell(w, (i + 1.0) / 40))
-      result = abbe_error_set(error, ABBE_CANCELLED, "the search was given up");
+  const double crown = s->crown_from_rad + x[0] * (s->crown_to_rad - s->crown_from_rad);
+  const double pavilion = s->pavilion_from_rad + x[1] * (s->pavilion_to_rad - s->pavilion_from_rad);
+  *to = (place){0};
+  abbe_result result = abbe_cut_copy(&design->cut, &to->cut, error);
+  if (result == ABBE_OK)
+    result = abbe_cut_stretch_to(&to->cut, &design->polyhedron, crown / ABBE_DEGREE,
+                                 pavilion / ABBE_DEGREE, error);
+  if (result == ABBE_OK) result = abbe_cut_polyhedron_make(&to->cut, 0, &to->polyhedron, error);
+  if (result != ABBE_OK) place_free(to);
+  return result;
+}
+
+static abbe_result look_at_pair(work *w, const place *design, abbe_surrogate *known,
+                                abbe_error *error) {
+  const abbe_gem_optimum_desc *s = &w->q->search;
+  const double wide[2] = {s->crown_to_rad - s->crown_from_rad,
+                          s->pavilion_to_rad - s->pavilion_from_rad};
+  const double sign = s->least ? -1 : 1;
+  const size_t i = known->count;
+  place p;
+  abbe_gem_stone stone;
+  abbe_gem_slope slope;
+  abbe_gem_number by[2];
+  ABBE_TRY(pair_at(w, design, known->at[i], &p, error));
+  abbe_result result = follow(w, &p, &stone, &slope, error);
+  if (result == ABBE_OK) {
+    result = derive(&p, &stone, &slope, false, by, error);
+    known->value[i] = sign * slope.value.value;
+    for (int k = 0; k < 2; k++) known->by[i][k] = sign * by[k].value * wide[k];
+    known->count++;
+    abbe_gem_slope_free(&slope);
+    abbe_gem_stone_free(&stone);
   }
-  if (result == ABBE_OK) qsort(start, STARTS, sizeof *start, better_first);
-  for (int i = 0; i < WAYS && result == ABBE_OK; i++) {
-    abbe_gem_number value = {0};
-    result = climb(w, &start[i], most, error);
-    if (result == ABBE_OK) result = judge(w, &start[i], &value, error);
-    if (result == ABBE_OK && !tell(w, 0.25 * (i + 2)))
-      result = abbe_error_set(error, ABBE_CANCELLED, "the search was given up");
-    if (result != ABBE_OK || (i > 0 && !is_better(w, value, out->value))) continue;
+  place_free(&p);
+  if (result == ABBE_OK && !tell(w, (double)known->count / PAIRS))
+    result = abbe_error_set(error, ABBE_CANCELLED, "the search was given up");
+  return result;
+}
+
+/* The best of what is known, far from those that were; -1: none. */
+static int next_best(const abbe_surrogate *known, const int *taken, int count) {
+  int best = -1;
+  for (int i = 0; i < (int)known->count; i++) {
+    bool far = true;
+    for (int k = 0; k < count; k++)
+      far = far && hypot(known->at[i][0] - known->at[taken[k]][0],
+                         known->at[i][1] - known->at[taken[k]][1]) > 0.03;
+    if (far && (best < 0 || known->value[i] > known->value[best])) best = i;
+  }
+  return best;
+}
+
+/* Judges a pair, and takes it where it is better than what out has. */
+static abbe_result judge_pair(work *w, const place *design, double x[2], bool first,
+                              double best_x[2], abbe_gem_ascent *out, place *best,
+                              abbe_error *error) {
+  place p;
+  abbe_gem_number value;
+  for (int k = 0; k < 2; k++) x[k] = clamp(x[k], 0, 1);
+  ABBE_TRY(pair_at(w, design, x, &p, error));
+  const abbe_result result = judge(w, &p, &value, error);
+  if (result == ABBE_OK && (first || is_better(w, value, out->value))) {
+    memcpy(best_x, x, 2 * sizeof *x);
     out->value = value;
     place_free(best);
-    *best = start[i];
-    start[i] = (place){0};
+    *best = p;
+    return ABBE_OK;
   }
-  for (int i = 0; i < STARTS; i++) place_free(&start[i]);
+  place_free(&p);
+  return result;
+}
+
+static abbe_result judge_pairs(work *w, const place *design, const abbe_surrogate *known,
+                               abbe_gem_ascent *out, place *best, abbe_error *error) {
+  int taken[JUDGED];
+  double x[2], centre[2], unused[2];
+  for (int i = 0; i < JUDGED; i++) {
+    taken[i] = next_best(known, taken, i);
+    if (taken[i] < 0) break;
+    memcpy(x, known->at[taken[i]], sizeof x);
+    ABBE_TRY(judge_pair(w, design, x, i == 0, centre, out, best, error));
+  }
+  for (int i = 0; i < BESIDE; i++) {
+    memcpy(x, centre, sizeof x);
+    x[1 - i / 2] += i % 2 ? 0.025 : -0.025;
+    ABBE_TRY(judge_pair(w, design, x, false, unused, out, best, error));
+  }
+  return ABBE_OK;
+}
+
+/* Stones are followed where those that are known, with their derivatives, promise most. */
+static abbe_result search_pair(work *w, const place *design, abbe_gem_ascent *out, place *best,
+                               abbe_error *error) {
+  abbe_surrogate *known = malloc(sizeof *known);
+  if (known == NULL) return no_memory(error);
+  known->count = 0;
+  abbe_result result = ABBE_OK;
+  for (int i = 0; i < PAIRS && result == ABBE_OK; i++) {
+    double *x = known->at[i];
+    x[0] = (i % ACROSS + 0.5) / ACROSS;
+    x[1] = ((i / ACROSS) + 0.5) / ACROSS;
+    if (i >= ACROSS * ACROSS) {
+      if (!abbe_surrogate_fit(known)) break;
+      abbe_surrogate_best(known, i < UNSURE ? 1 : 0, x);
+    }
+    result = look_at_pair(w, design, known, error);
+  }
+  if (result == ABBE_OK) result = judge_pairs(w, design, known, out, best, error);
+  free(known);
   return result;
 }
 
@@ -397,10 +420,10 @@ static abbe_result search_from(work *w, const place *design, bool first, abbe_ge
   if (none == NULL) return no_memory(error);
   place at = {0};
   abbe_gem_number value = {0};
-  abbe_result result = go(w, design, none, &at, error);
+  abbe_result result = go(design, none, &at, error);
   free(none);
   if (result == ABBE_OK) result = look(w, &at, error);
-  if (result == ABBE_OK) result = climb(w, &at, w->q->most > 0 ? w->q->most : 60, error);
+  if (result == ABBE_OK) result = climb(w, &at, w->q->most > 0 ? w->q->most : 100, error);
   if (result == ABBE_OK) result = judge(w, &at, &value, error);
   if (result == ABBE_OK && (first || is_better(w, value, out->value))) {
     out->value = value;
@@ -412,15 +435,16 @@ static abbe_result search_from(work *w, const place *design, bool first, abbe_ge
   return result;
 }
 
-/* From the best of two angles, and from the design itself. */
+/* From the best of two angles, unless both sides can only be stretched as one, and from the design
+ * itself. */
 static abbe_result search_tiers(work *w, const place *design, abbe_gem_ascent *out, place *best,
                                 abbe_error *error) {
   place pair = {0};
-  abbe_result result = search_pair(w, design, out, &pair, error);
-  w->tiers = true;
-  w->scalars = 2 * design->cut.tier_count;
-  if (result == ABBE_OK) result = search_from(w, &pair, true, out, best, error);
-  if (result == ABBE_OK) result = search_from(w, design, false, out, best, error);
+  abbe_result result = ABBE_OK;
+  const bool bound = abbe_cut_stretch_bound(&design->cut, &design->polyhedron);
+  if (!bound) result = search_pair(w, design, out, &pair, error);
+  if (!bound && result == ABBE_OK) result = search_from(w, &pair, true, out, best, error);
+  if (result == ABBE_OK) result = search_from(w, design, bound, out, best, error);
   place_free(&pair);
   return result;
 }
@@ -444,7 +468,7 @@ abbe_result abbe_gem_ascent_make(const abbe_cut *cut, const abbe_cut_polyhedron 
                                  const abbe_weights *weights, const abbe_gem_ascent_desc *q,
                                  abbe_gem_ascent *out, abbe_error *error) {
   *out = (abbe_gem_ascent){0};
-  work w = {material, wavelengths, weights, q, 2, 0, false};
+  work w = {material, wavelengths, weights, q, 2 * cut->tier_count, 0};
   const place design = {.cut = *cut, .polyhedron = *polyhedron};
   place best = {0};
   abbe_result result = judge(&w, &design, &out->design, error);
@@ -456,8 +480,7 @@ abbe_result abbe_gem_ascent_make(const abbe_cut *cut, const abbe_cut_polyhedron 
   if (result == ABBE_OK) {
     out->cut = best.cut;
     out->polyhedron = best.polyhedron;
-    best.cut.tier = NULL;
-    best.cut.facet = NULL;
+    best.cut = (abbe_cut){0};
     best.polyhedron = (abbe_cut_polyhedron){0};
   }
   place_free(&best);
@@ -467,8 +490,7 @@ abbe_result abbe_gem_ascent_make(const abbe_cut *cut, const abbe_cut_polyhedron 
 
 void abbe_gem_ascent_free(abbe_gem_ascent *a) {
   if (a == NULL) return;
-  free(a->cut.tier);
-  free(a->cut.facet);
+  abbe_cut_copy_free(&a->cut);
   abbe_cut_polyhedron_free(&a->polyhedron);
   free(a->slope);
   *a = (abbe_gem_ascent){0};

@@ -26,7 +26,7 @@ typedef struct abbe_gem_ascent_desc {
   abbe_gem_optimum_desc search; /* ranges, measure, view; not its grid */
   bool tiers;                   /* every tier; else the two angles */
   double fire, spread;          /* as abbe_gem_slope_desc has them */
-  size_t most;                  /* evaluations of each way uphill of tiers; 0: 60 */
+  size_t most;                  /* evaluations of each way uphill of tiers; 0: 100 */
 } abbe_gem_ascent_desc;
 
 /* Errors as abbe_gem_optimum_find and abbe_gem_slope_make. */

@@ -61,25 +61,14 @@ abbe_result abbe_gem_optimum_apply(const abbe_gem_optimum *o, abbe_cut *cut,
       tan(o->pavilion_rad[i / o->crowns]) / tan(o->design_pavilion_rad), error);
 }
 
-/* The planes are the copy's own; names and texts are the design's. */
 static abbe_result make_pair(const work *w, const abbe_cut *cut, const abbe_cut_polyhedron *p,
                              const abbe_gem_optimum *o, size_t i, abbe_gem_stone *out,
                              abbe_error *error) {
-  abbe_cut own = *cut;
-  own.tier = malloc(cut->tier_count * sizeof *own.tier);
-  own.facet = malloc(cut->facet_count * sizeof *own.facet);
-  abbe_result result = ABBE_OK;
-  if (own.tier == NULL || own.facet == NULL)
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a design of %zu facets",
-                            cut->facet_count);
-  if (result == ABBE_OK) {
-    memcpy(own.tier, cut->tier, cut->tier_count * sizeof *own.tier);
-    memcpy(own.facet, cut->facet, cut->facet_count * sizeof *own.facet);
-    result = abbe_gem_optimum_apply(o, &own, p, i, error);
-  }
+  abbe_cut own;
+  ABBE_TRY(abbe_cut_copy(cut, &own, error));
+  abbe_result result = abbe_gem_optimum_apply(o, &own, p, i, error);
   if (result == ABBE_OK) result = make_stone(w, &own, out, error);
-  free(own.tier);
-  free(own.facet);
+  abbe_cut_copy_free(&own);
   return result;
 }
 

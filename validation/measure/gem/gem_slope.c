@@ -77,6 +77,18 @@ static void run_line(abbe_gem_stretch *pair, const double o[3], double weight, s
   abbe_gem_stretch_move(last, true, weight, to->by_area);
 }
 
+/* As often as it counts in white light. */
+static uint32_t wavelength_at(const abbe_weights *weights, double chance) {
+  double below = 0;
+  uint32_t k = 0;
+  while (k + 1 < weights->count) {
+    below += weights->weight[k][1] / weights->sum[1];
+    if (chance < below) break;
+    k++;
+  }
+  return k;
+}
+
 /* Lines of a repeat lie side by side in a direction of its own, one wavelength each. */
 static void run_repeat(const abbe_gem_stone *s, const abbe_weights *weights,
                        const abbe_gem_slope_desc *q, size_t repeat, abbe_gem_stretch w[2],
@@ -97,14 +109,15 @@ static void run_repeat(const abbe_gem_stone *s, const abbe_weights *weights,
   }
   for (size_t i = 0; i < lines; i++) {
     const double aside = 2 * ((double)i + shift) / (double)lines - 1;
-    const uint32_t k = (uint32_t)((i + repeat * lines) % s->wavelengths);
+    const double chance = fmod(0.5 + (double)i * 0.6180339887498949 + shift, 1);
+    const uint32_t k = wavelength_at(weights, chance);
     w->n = w->n_blue = (double)abbe_media_n(&s->media, 0, k, 0);
     w->n_blue += q->spread;
     w->loss = (double)abbe_media_attenuation(&s->media, 0, k, 0);
     w[1] = w[0];
     double o[3];
     for (int c = 0; c < 3; c++) o[c] = aside * across[c] - 2 * w->sight[c];
-    run_line(w, o, 2 / (double)lines * weights->weight[k][1] / weights->sum[1], to);
+    run_line(w, o, 2 / (double)lines, to);
   }
 }
 
