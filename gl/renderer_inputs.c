@@ -391,7 +391,7 @@ static uint64_t of_glow(const abbe_plan *plan, const uint64_t *part) {
 static uint64_t mix_glow_rows(uint64_t h, const abbe_scene *scene, const abbe_plan *plan) {
   for (size_t r = 0; r < plan->refractor_count; r++) {
     const abbe_object *o = &scene->object[plan->refractor_object[r]];
-    const size_t rows = o->material->fluorescence.rows;
+    const size_t rows = o->material != NULL ? o->material->fluorescence.rows : 0; /* mirrors */
     double *weight = rows > 0 ? calloc(rows, sizeof *weight) : NULL;
     if (weight == NULL) continue;
     abbe_glow_rows_weigh(scene, plan, o, weight);
