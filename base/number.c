@@ -3,6 +3,8 @@
 #include <locale.h>
 #include <math.h>
 #include <pthread.h>
+#include <stdbool.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -39,9 +41,27 @@ const char *abbe_number_text(double value, char text[ABBE_NUMBER_TEXT_SIZE]) {
   return text;
 }
 
+/* Powers of ten that a double has exactly. A whole number below 2^53 times or over one of them is
+ * rounded once, as the decimal is that they stand for [Clinger1990]. */
+enum { EXACT_POWERS = 23 };
+static const double power_of_ten[EXACT_POWERS] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                  1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                                  1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+/* The decimal of six places that a value has nearly is its nearest one of 15 digits, wherever it
+ * is nearer than half a step of these. */
+static bool tidy_at_once(double value, double *tidy) {
+  const double scaled = value * power_of_ten[6], whole = nearbyint(scaled);
+  if (!(fabs(scaled) < 1e15) || !(fabs(scaled - whole) <= 3.5e-16 * fabs(scaled))) return false;
+  *tidy = whole / power_of_ten[6];
+  return true;
+}
+
 double abbe_number_tidy(double value) {
   char text[ABBE_NUMBER_TEXT_SIZE];
   if (!isfinite(value)) return value;
+  double at_once;
+  if (tidy_at_once(value, &at_once)) return at_once;
   locale_t host = abbe_number_enter();
   snprintf(text, sizeof text, "%.15g", value);
   double tidy = strtod(text, NULL);
@@ -53,6 +73,36 @@ static bool digit(char c) {
   return c >= '0' && c <= '9';
 }
 
+/* A decimal of few digits, from its first digit or point on; false leaves it to strtod. */
+static bool read_short(const char *c, bool negative, const char **end, double *value) {
+  enum { MOST_DIGITS = 15 };
+  uint64_t whole = 0;
+  int digits = 0, places = 0, power = 0;
+  for (; digit(*c) && digits <= MOST_DIGITS; c++, digits++)
+    whole = 10 * whole + (uint64_t)(*c - '0');
+  if (*c == '.')
+    for (c++; digit(*c) && digits <= MOST_DIGITS; c++, digits++, places++)
+      whole = 10 * whole + (uint64_t)(*c - '0');
+  if (digits == 0 || digits > MOST_DIGITS || digit(*c)) return false;
+  if (*c == 'e' || *c == 'E') {
+    const char *at = c + 1;
+    const bool below = *at == '-';
+    if (*at == '-' || *at == '+') at++;
+    if (!digit(*at)) return false;
+    for (; digit(*at) && power < EXACT_POWERS; at++) power = 10 * power + (*at - '0');
+    if (digit(*at)) return false;
+    if (below) power = -power;
+    c = at;
+  }
+  power -= places;
+  if (abs(power) >= EXACT_POWERS) return false;
+  const double size =
+      power < 0 ? (double)whole / power_of_ten[-power] : (double)whole * power_of_ten[power];
+  *value = negative ? -size : size;
+  *end = c;
+  return true;
+}
+
 bool abbe_number_read(const char *text, const char **end, double *value) {
   const char *c = text;
   while (*c == ' ' || *c == '\t') c++;
@@ -62,6 +112,7 @@ bool abbe_number_read(const char *text, const char **end, double *value) {
   *end = text;
   /* what strtod reads beyond decimals: hexadecimal (after a 0), inf and nan (no digit) */
   if (!digit(*c) || (*c == '0' && (c[1] == 'x' || c[1] == 'X'))) return false;
+  if (read_short(c > first && c[-1] == '.' ? c - 1 : c, *first == '-', end, value)) return true;
   locale_t host = abbe_number_enter();
   char *past = NULL;
   *value = strtod(first, &past);

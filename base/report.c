@@ -71,6 +71,17 @@ void abbe_report_add(abbe_report *report, abbe_note_kind kind, size_t line, cons
   abbe_utf8_printable(name, strlen(name), false, note->name, sizeof note->name);
 }
 
+void abbe_report_join(abbe_report *report, const abbe_report *from) {
+  if (report == NULL) return;
+  for (int kind = 0; kind < ABBE_NOTE_KIND_COUNT; kind++) report->kinds[kind] += from->kinds[kind];
+  for (size_t i = 0; i < from->count; i++) {
+    abbe_note *note = room(report);
+    if (note == NULL) return;
+    *note = from->note[i];
+    report->count++;
+  }
+}
+
 const char *abbe_note_kind_word(abbe_note_kind kind) {
   static const char *const words[] = {
 #define ABBE_NOTE_WORD(code, word) word,

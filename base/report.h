@@ -53,6 +53,9 @@ __attribute__((format(printf, 5, 6)))
 void abbe_report_add(abbe_report *report, abbe_note_kind kind, size_t line, const char *name,
                      const char *format, ...);
 
+/* Adds what `from` has, as it is; report may be NULL. */
+void abbe_report_join(abbe_report *report, const abbe_report *from);
+
 const char *abbe_note_kind_word(abbe_note_kind kind);
 
 /* What happens to many materials of a table in the same way, counted and noted once.

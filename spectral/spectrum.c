@@ -110,6 +110,16 @@ static void find_slopes(abbe_spectrum *s) {
                              l[last - 1] - l[last - 2]);
 }
 
+/* Evaluates the cubic in one interval, at a share t of it: its value, or its integral from the
+ * interval's beginning, over the width. */
+static double cubic(const abbe_spectrum *s, size_t i, double t, bool integral) {
+  const double width = s->lambda_nm[i + 1] - s->lambda_nm[i], y = s->value[i];
+  const double rise = s->value[i + 1] - y, from = width * s->slope[i], to = width * s->slope[i + 1];
+  const double square = 3 * rise - 2 * from - to, cube = from + to - 2 * rise;
+  if (integral) return t * (y + t * (from / 2 + t * (square / 3 + t * cube / 4)));
+  return y + t * (from + t * (square + t * cube));
+}
+
 /* Finite points can still make slopes that overflow. */
 static bool usable(abbe_spectrum *spectrum) {
   if (spectrum->count == 1) return true;
@@ -123,8 +133,12 @@ static bool usable(abbe_spectrum *spectrum) {
     if (status != GSL_SUCCESS) return false;
   }
   const double *l = spectrum->lambda_nm;
-  for (size_t i = 1; i < spectrum->count; i++)
-    if (!isfinite(abbe_spectrum_at(spectrum, l[i - 1] + (l[i] - l[i - 1]) / 2))) return false;
+  for (size_t i = 1; i < spectrum->count; i++) {
+    const double middle = spectrum->slope != NULL
+                              ? cubic(spectrum, i - 1, 0.5, false)
+                              : abbe_spectrum_at(spectrum, l[i - 1] + (l[i] - l[i - 1]) / 2);
+    if (!isfinite(middle)) return false;
+  }
   return true;
 }
 
@@ -158,16 +172,6 @@ void abbe_spectrum_free(abbe_spectrum *spectrum) {
   free(spectrum->slope);
   if (spectrum->interp != NULL) gsl_interp_free(spectrum->interp);
   free(spectrum);
-}
-
-/* Evaluates the cubic in one interval, at a share t of it: its value, or its integral from the
- * interval's beginning, over the width. */
-static double cubic(const abbe_spectrum *s, size_t i, double t, bool integral) {
-  const double width = s->lambda_nm[i + 1] - s->lambda_nm[i], y = s->value[i];
-  const double rise = s->value[i + 1] - y, from = width * s->slope[i], to = width * s->slope[i + 1];
-  const double square = 3 * rise - 2 * from - to, cube = from + to - 2 * rise;
-  if (integral) return t * (y + t * (from / 2 + t * (square / 3 + t * cube / 4)));
-  return y + t * (from + t * (square + t * cube));
 }
 
 static double share_of(const abbe_spectrum *s, size_t i, double lambda_nm) {

@@ -7,6 +7,7 @@
 #include "spectral/store/material_store.h"
 
 #include <argp.h>
+#include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -117,12 +118,17 @@ static void check(const request *r) {
     abbe_materials_wrong_use(r->program, "--json goes with -o TABLE.yaml");
 }
 
-static abbe_result load(const request *r, abbe_material_table *table, abbe_report *report,
+static abbe_result load(request *r, abbe_material_table *table, abbe_report *report,
                         abbe_error *error) {
   if (r->output != NULL && !r->force && access(r->output, F_OK) == 0)
     return abbe_error_set(error, ABBE_IO,
                           "%s: is there already; --force writes over it, or choose another name",
                           r->output);
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 1 << 20); /* a large file's memory goes back and is not kept */
+#endif
+  if (r->output != NULL && abbe_material_store_is_name(r->output))
+    ABBE_TRY(abbe_material_store_begin(&r->batch.store, error));
   return abbe_import_batch_run(&r->batch, table, report, error);
 }
 
@@ -131,8 +137,8 @@ static abbe_result save(const request *r, const abbe_material_table *table, abbe
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, r->output, error);
   if (result == ABBE_OK)
-    result = abbe_material_store_is_name(r->output)
-                 ? abbe_material_store_write(table, writer.stream, error)
+    result = r->batch.store != NULL
+                 ? abbe_material_store_end(r->batch.store, table, writer.stream, error)
                  : abbe_material_table_write(table, writer.stream, error);
   return abbe_file_writer_end(&writer, result, error);
 }
@@ -168,6 +174,7 @@ int abbe_materials_import(int argc, char **argv) {
     result = tell(&r, &table, &report, &error);
   else if (!r.json)
     abbe_materials_print_report(r.program, &report, r.all);
+  abbe_material_store_drop(r.batch.store);
   abbe_material_table_free(&table);
   abbe_report_free(&report);
   return abbe_command_end(r.program, result, &error);

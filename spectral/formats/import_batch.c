@@ -8,6 +8,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <pthread.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -15,6 +16,7 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 /* The files that paths name, those in folders included.
  * It knows which endings files of materials have and opens none of them. */
@@ -161,13 +163,8 @@ static abbe_result import_files_add(abbe_import_files *files, const char *path, 
   return add(files, strdup(path), false, error);
 }
 
-enum { MAX_BYTES = 64 << 20, MAX_PART = 160, MAX_LEVELS = 16 };
-
-/* A row of the table and the file that it comes from. */
-typedef struct row {
-  abbe_material *material;
-  const char *path;
-} row;
+enum { AHEAD = 16, MOST_THREADS = 8, WORTH_THREADS = 64 };
+enum { MAX_BYTES = 64 << 20 };
 
 typedef struct runner {
   const abbe_import_batch *batch;
@@ -189,26 +186,37 @@ static bool ends_with(const char *path, const char *ending) {
   return length >= wanted && strcasecmp(path + length - wanted, ending) == 0;
 }
 
-static abbe_result read_file(runner *r, const abbe_import_file *file, bool *strange,
-                             abbe_error *error) {
-  if (abbe_material_store_is(file->path))
-    return abbe_import_load(file->path, NULL, r->table, r->report, error);
+/* What a file holds. */
+typedef struct file_read {
+  abbe_material_table table;
+  abbe_report report;
+  abbe_error why;
+  abbe_result result;
+  bool strange; /* nothing of ours may be in it */
+  bool ready;
+} file_read;
+
+static abbe_result read_file(const runner *r, const char *path, file_read *t) {
+  if (abbe_material_store_is(path))
+    return abbe_import_load(path, NULL, &t->table, &t->report, &t->why);
   abbe_import_options options = r->batch->import;
   char *bytes = NULL;
   size_t size = 0;
-  abbe_result result = abbe_file_read_text(file->path, MAX_BYTES, &bytes, &size, error);
-  *strange = result == ABBE_PARSE;
+  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &bytes, &size, &t->why);
+  t->strange = result == ABBE_PARSE;
   if (result != ABBE_OK) return result;
   if (options.format == ABBE_IMPORT_AUTO) options.format = abbe_import_detect(bytes, size);
   /* a text may hold a line of numbers */
-  *strange = options.format == ABBE_IMPORT_AUTO ||
-             (options.format == ABBE_IMPORT_CSV && !ends_with(file->path, ".csv"));
-  result = abbe_import_parse(bytes, size, file->path, &options, r->table, r->report, error);
+  t->strange = options.format == ABBE_IMPORT_AUTO ||
+               (options.format == ABBE_IMPORT_CSV && !ends_with(path, ".csv"));
+  result = abbe_import_parse(bytes, size, path, &options, &t->table, &t->report, &t->why);
   free(bytes);
   return result;
 }
 
 static abbe_result remember(runner *r, const char *path, abbe_error *error) {
+  for (size_t i = r->origins; i < r->table->count && r->batch->store != NULL; i++)
+    ABBE_TRY(abbe_material_store_put(r->batch->store, &r->table->material[i], error));
   const char **larger = realloc(r->origin, (r->table->count + 1) * sizeof *larger);
   if (larger == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for names of files");
   r->origin = larger;
@@ -217,35 +225,111 @@ static abbe_result remember(runner *r, const char *path, abbe_error *error) {
 }
 
 /* Where a file cannot be used, the reason is reported, not what was met before it. */
-static abbe_result take_file(runner *r, const abbe_import_file *file, abbe_error *error) {
-  abbe_error why = {0};
-  bool strange = false, many = r->files.count > 1;
-  abbe_report before = r->report != NULL ? *r->report : (abbe_report){0};
-  if (r->report != NULL && many) r->report->file = file->path;
-  abbe_result result = read_file(r, file, &strange, &why);
-  if (r->report != NULL) r->report->file = NULL;
-  if (result == ABBE_NO_MEMORY) return abbe_error_set(error, result, "%s", why.text);
-  if (result == ABBE_OK) {
+static abbe_result take_file(runner *r, const abbe_import_file *file, file_read *t,
+                             abbe_error *error) {
+  const bool many = r->files.count > 1;
+  if (t->result == ABBE_OK) t->result = abbe_material_table_move(&t->table, r->table, &t->why);
+  if (t->result == ABBE_NO_MEMORY) return abbe_error_set(error, t->result, "%s", t->why.text);
+  if (t->result == ABBE_OK || !many) abbe_report_join(r->report, &t->report);
+  if (t->result == ABBE_OK) {
     r->used++;
     return remember(r, file->path, error);
   }
-  if (r->first.text[0] == '\0') r->first = why;
-  if (r->report != NULL && many) {
-    r->report->count = before.count;
-    memcpy(r->report->kinds, before.kinds, sizeof before.kinds);
-  }
-  if (strange && file->found) {
+  if (r->first.text[0] == '\0') r->first = t->why;
+  if (t->strange && file->found) {
     if (r->strange++ == 0) r->first_strange = file->path;
     return ABBE_OK;
   }
-  if (many) abbe_report_add(r->report, ABBE_NOTE_SKIPPED, 0, NULL, "%s", why.text);
+  if (many) abbe_report_add(r->report, ABBE_NOTE_SKIPPED, 0, NULL, "%s", t->why.text);
   return ABBE_OK;
 }
 
-static abbe_result take_files(runner *r, abbe_error *error) {
+static void read_one(const runner *r, size_t i, file_read *t) {
+  const char *path = r->files.file[i].path;
+  *t = (file_read){.report.file = r->files.count > 1 ? path : NULL};
+  t->result = read_file(r, path, t);
+  t->ready = true;
+}
+
+/* Threads that read files ahead of the one that takes them in their order. */
+typedef struct readers {
+  const runner *r;
+  file_read ahead[AHEAD]; /* of file i at i % AHEAD */
+  size_t next, taken;
+  bool over;
+  pthread_mutex_t mutex;
+  pthread_cond_t changed;
+} readers;
+
+static void *read_ahead(void *user) {
+  readers *s = user;
+  const size_t count = s->r->files.count;
+  pthread_mutex_lock(&s->mutex);
+  while (s->next < count && !s->over) {
+    if (s->next == s->taken + AHEAD) {
+      pthread_cond_wait(&s->changed, &s->mutex);
+      continue;
+    }
+    const size_t i = s->next++;
+    file_read t;
+    pthread_mutex_unlock(&s->mutex);
+    read_one(s->r, i, &t);
+    pthread_mutex_lock(&s->mutex);
+    s->ahead[i % AHEAD] = t;
+    pthread_cond_broadcast(&s->changed);
+  }
+  pthread_mutex_unlock(&s->mutex);
+  return NULL;
+}
+
+static abbe_result take_all(runner *r, readers *s, size_t threads, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < r->files.count && result == ABBE_OK; i++)
-    result = take_file(r, &r->files.file[i], error);
+  for (size_t i = 0; i < r->files.count && result == ABBE_OK; i++) {
+    file_read *t = &s->ahead[i % AHEAD];
+    if (threads == 0) read_one(r, i, t);
+    pthread_mutex_lock(&s->mutex);
+    while (!t->ready) pthread_cond_wait(&s->changed, &s->mutex);
+    pthread_mutex_unlock(&s->mutex);
+    result = take_file(r, &r->files.file[i], t, error);
+    abbe_material_table_free(&t->table);
+    abbe_report_free(&t->report);
+    pthread_mutex_lock(&s->mutex);
+    *t = (file_read){0};
+    s->taken = i + 1;
+    s->over = result != ABBE_OK;
+    pthread_cond_broadcast(&s->changed);
+    pthread_mutex_unlock(&s->mutex);
+  }
+  return result;
+}
+
+static abbe_result take_files(runner *r, abbe_error *error) {
+  pthread_t thread[MOST_THREADS];
+  const long processors = sysconf(_SC_NPROCESSORS_ONLN);
+  const size_t worth = r->files.count < WORTH_THREADS ? 0
+                       : processors < MOST_THREADS    ? (size_t)processors
+                                                      : MOST_THREADS;
+  size_t threads = 0;
+  readers *s = calloc(1, sizeof *s);
+  if (s == NULL) return no_memory(error);
+  s->r = r;
+  pthread_mutex_init(&s->mutex, NULL);
+  pthread_cond_init(&s->changed, NULL);
+  while (threads < worth && pthread_create(&thread[threads], NULL, read_ahead, s) == 0) threads++;
+  abbe_result result = take_all(r, s, threads, error);
+  while (threads > 0) pthread_join(thread[--threads], NULL);
+  for (size_t i = 0; i < AHEAD; i++) { /* what is not taken after a failure */
+    abbe_material_table_free(&s->ahead[i].table);
+    abbe_report_free(&s->ahead[i].report);
+  }
+  pthread_cond_destroy(&s->changed);
+  pthread_mutex_destroy(&s->mutex);
+  free(s);
+  return result;
+}
+
+static abbe_result take_named(runner *r, abbe_error *error) {
+  abbe_result result = take_files(r, error);
   if (result != ABBE_OK) return result;
   if (r->strange > 0)
     abbe_report_add(r->report, ABBE_NOTE_SKIPPED, 0, NULL,
@@ -260,152 +344,6 @@ static abbe_result take_files(runner *r, abbe_error *error) {
   if (r->files.count == 1) return abbe_error_set(error, r->first.code, "%s", r->first.text);
   return abbe_error_set(error, r->first.code, "none of the %zu files can be used; the first: %s",
                         r->files.count, r->first.text);
-}
-
-/* ---- names ---- */
-
-/* Whether the file without its ending is just the material's name, as that of a file with one
- * material is. */
-static bool is_named_after(const row *it) {
-  const char *slash = strrchr(it->path, '/'), *stem = slash != NULL ? slash + 1 : it->path;
-  const char *dot = strrchr(stem, '.'), *name = it->material->name;
-  size_t length = dot != NULL && dot > stem ? (size_t)(dot - stem) : strlen(stem);
-  size_t whole = strlen(name);
-  return length <= whole && strncasecmp(name + whole - length, stem, length) == 0;
-}
-
-/* The part of a row's path `level` from its end: 0 is the file without its ending, or its folder
- * where the file is just the name; "" beyond the first. */
-static void part_of(const row *it, int level, char out[MAX_PART]) {
-  const char *path = it->path, *end = path + strlen(path), *start;
-  if (is_named_after(it)) level++;
-  for (;; level--) {
-    for (start = end; start > path && start[-1] != '/';) start--;
-    if (level == 0 || start == path) break;
-    for (end = start; end > path && end[-1] == '/';) end--;
-  }
-  const char *dot = *end == '\0' ? strrchr(start, '.') : NULL;
-  if (dot != NULL && dot > start) end = dot;
-  snprintf(out, MAX_PART, "%.*s", level > 0 ? 0 : (int)(end - start), start);
-  abbe_utf8_trim(out);
-}
-
-typedef struct label {
-  char text[MAX_PART];
-} label;
-
-typedef enum likeness { ALL_ALIKE, SOME_ALIKE, ALL_DIFFER } likeness;
-
-static int by_text(const void *a, const void *b) {
-  return strcasecmp((*(const label *const *)a)->text, (*(const label *const *)b)->text);
-}
-
-static likeness compare(const label *labels, size_t count, const label **sorted) {
-  size_t steps = 0;
-  for (size_t i = 0; i < count; i++) sorted[i] = &labels[i];
-  qsort(sorted, count, sizeof *sorted, by_text);
-  for (size_t i = 1; i < count; i++) steps += by_text(&sorted[i - 1], &sorted[i]) != 0;
-  return steps == 0 ? ALL_ALIKE : steps + 1 < count ? SOME_ALIKE : ALL_DIFFER;
-}
-
-/* The one folder or file, nearest to the file, by which the rows differ; else all that differ,
- * joined. False where the paths are alike. */
-static bool find_labels(const row *rows, size_t count, label *labels, label *parts,
-                        const label **sorted) {
-  for (int level = 0; level < MAX_LEVELS; level++) {
-    bool full = true;
-    for (size_t i = 0; i < count; i++) {
-      part_of(&rows[i], level, labels[i].text);
-      full = full && labels[i].text[0] != '\0';
-    }
-    if (full && compare(labels, count, sorted) == ALL_DIFFER) return true;
-  }
-  for (size_t i = 0; i < count; i++) labels[i].text[0] = '\0';
-  for (int level = 0; level < MAX_LEVELS; level++) {
-    for (size_t i = 0; i < count; i++) part_of(&rows[i], level, parts[i].text);
-    if (compare(parts, count, sorted) == ALL_ALIKE) continue;
-    for (size_t i = 0; i < count; i++) {
-      char joined[2 * MAX_PART], *text = labels[i].text, *part = parts[i].text;
-      snprintf(joined, sizeof joined, "%s%s%s", part, *part != '\0' && *text != '\0' ? "-" : "",
-               text);
-      snprintf(text, MAX_PART, "%.*s", MAX_PART - 1, joined);
-      abbe_utf8_trim(text);
-    }
-    if (compare(labels, count, sorted) == ALL_DIFFER) return true;
-  }
-  return false;
-}
-
-/* "BEFORE-NAME" after a label, "BEFORENAME" after a prefix; what stands before is cut where the
- * whole would be too long. */
-static abbe_result rename_row(runner *r, const row *it, const char *before, bool is_label,
-                              abbe_error *error) {
-  char name[MAX_PART + ABBE_MATERIAL_MAX_NAME + 4], cut[MAX_PART];
-  const char *old = it->material->name;
-  size_t taken = strlen(old) + is_label;
-  size_t room = taken < ABBE_MATERIAL_MAX_NAME ? ABBE_MATERIAL_MAX_NAME - taken : 0;
-  snprintf(cut, sizeof cut, "%.*s", (int)room, before);
-  abbe_utf8_trim(cut);
-  bool whole = strcmp(cut, before) == 0;
-  for (char *c = cut; *c != '\0'; c++)
-    if ((unsigned char)*c < 0x20 || *c == 0x7f) *c = '?';
-  const char *begin = cut + strspn(cut, " ");
-  snprintf(name, sizeof name, "%s%s%s", begin, is_label && *begin != '\0' ? "-" : "", old);
-  if (abbe_material_check_name(name, NULL) != ABBE_OK) return ABBE_OK;
-  char *made = strdup(name);
-  if (made == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
-  if (is_label)
-    abbe_report_add(r->report, ABBE_NOTE_RENAMED, it->material->line, old,
-                    "is named %s, since several files have a material of this name; it is of %s",
-                    made, it->path);
-  else if (!whole)
-    abbe_report_add(r->report, ABBE_NOTE_RENAMED, it->material->line, old,
-                    "with the whole prefix its name would be too long; it is named %s", made);
-  free(it->material->name);
-  it->material->name = made;
-  return ABBE_OK;
-}
-
-static abbe_result name_apart(runner *r, const row *rows, size_t count, abbe_error *error) {
-  bool one_file = true;
-  for (size_t i = 1; i < count; i++) one_file = one_file && strcmp(rows[0].path, rows[i].path) == 0;
-  if (one_file) return ABBE_OK; /* reported, and dropped as a repetition */
-  label *labels = calloc(2 * count, sizeof *labels);
-  const label **sorted = calloc(count, sizeof *sorted);
-  abbe_result result = labels != NULL && sorted != NULL
-                           ? ABBE_OK
-                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for names");
-  bool apart = result == ABBE_OK && find_labels(rows, count, labels, labels + count, sorted);
-  for (size_t i = 0; i < count && apart && result == ABBE_OK; i++)
-    result = rename_row(r, &rows[i], labels[i].text, true, error);
-  free(labels);
-  free(sorted);
-  return result;
-}
-
-static int by_name(const void *a, const void *b) {
-  const row *x = a, *y = b;
-  int order = strcasecmp(x->material->name, y->material->name);
-  return order != 0 ? order : (x->material > y->material) - (x->material < y->material);
-}
-
-static abbe_result name_all(runner *r, abbe_error *error) {
-  size_t count = r->table->count;
-  row *rows = malloc((count + 1) * sizeof *rows);
-  if (rows == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu names", count);
-  for (size_t i = 0; i < count; i++)
-    rows[i] = (row){&r->table->material[i], i < r->origins ? r->origin[i] : ""};
-  qsort(rows, count, sizeof *rows, by_name);
-  abbe_result result = ABBE_OK;
-  for (size_t from = 0, to; from < count && result == ABBE_OK; from = to) {
-    for (to = from + 1; to < count; to++)
-      if (strcasecmp(rows[from].material->name, rows[to].material->name) != 0) break;
-    if (to - from > 1) result = name_apart(r, rows + from, to - from, error);
-  }
-  for (size_t i = 0; i < count && r->batch->prefix != NULL && result == ABBE_OK; i++)
-    result = rename_row(r, &rows[i], r->batch->prefix, false, error);
-  free(rows);
-  return result == ABBE_OK ? abbe_material_table_unique(r->table, r->report, error) : result;
 }
 
 /* By device and inode: a folder may hold the target, under another name too. */
@@ -434,8 +372,9 @@ abbe_result abbe_import_batch_run(const abbe_import_batch *batch, abbe_material_
                             "one name does not go with %zu files; a prefix does", r.files.count);
   if (result == ABBE_OK) result = check_target(&r, error);
   if (result == ABBE_OK) result = remember(&r, "", error); /* what the table had before */
-  if (result == ABBE_OK) result = take_files(&r, error);
-  if (result == ABBE_OK) result = name_all(&r, error);
+  if (result == ABBE_OK) result = take_named(&r, error);
+  if (result == ABBE_OK)
+    result = abbe_import_name_all(batch, into, r.origin, r.origins, report, error);
   if (result == ABBE_OK && r.used > 1) { /* it is one file's */
     free(into->description);
     into->description = NULL;

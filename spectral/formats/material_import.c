@@ -146,26 +146,6 @@ static abbe_result parse_points(const char *bytes, size_t size, const char *path
 
 /* ---- into the table ---- */
 
-/* Moves all of `from` to the end of `into`, or nothing. */
-static abbe_result move_all(abbe_material_table *from, abbe_material_table *into,
-                            abbe_error *error) {
-  if (from->count > ABBE_MATERIAL_TABLE_MAX_COUNT - into->count)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "%s: its %zu materials make more than the %d that a table holds",
-                          from->path, from->count, ABBE_MATERIAL_TABLE_MAX_COUNT);
-  const size_t before = into->count;
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < from->count && result == ABBE_OK; i++)
-    result = abbe_material_table_append(into, &from->material[i], error);
-  while (result != ABBE_OK && into->count > before)
-    abbe_material_free(&into->material[--into->count]);
-  if (result == ABBE_OK && into->count == from->count && into->description == NULL) {
-    into->description = from->description;
-    from->description = NULL;
-  }
-  return result;
-}
-
 static abbe_result parse_as(abbe_import_format format, const char *bytes, size_t size,
                             const char *path, const abbe_import_options *o,
                             abbe_material_table *into, abbe_report *report, abbe_error *error) {
@@ -192,7 +172,7 @@ static abbe_result parse_as(abbe_import_format format, const char *bytes, size_t
     result = parse_points(bytes, size, path, o, &one, report, error);
   }
   if (result == ABBE_OK && one.name != NULL) result = abbe_material_table_append(into, &one, error);
-  if (result == ABBE_OK) result = move_all(&table, into, error);
+  if (result == ABBE_OK) result = abbe_material_table_move(&table, into, error);
   abbe_material_free(&one);
   abbe_material_table_free(&table);
   return result;
@@ -221,7 +201,9 @@ abbe_result abbe_import_parse(const char *bytes, size_t size, const char *path,
 static abbe_result load_store(const char *path, abbe_material_table *into, abbe_error *error) {
   abbe_material_table table;
   abbe_result result = abbe_material_store_read(path, NULL, 0, NULL, &table, error);
-  if (result == ABBE_OK) result = move_all(&table, into, error);
+  for (size_t i = 0; i < table.count && result == ABBE_OK; i++)
+    result = abbe_material_check(&table.material[i], error);
+  if (result == ABBE_OK) result = abbe_material_table_move(&table, into, error);
   abbe_material_table_free(&table);
   return result;
 }

@@ -106,6 +106,7 @@ typedef struct abbe_import_batch {
   const char
       *target; /* what the table is to be written to, so none of the files; NULL: not known */
   abbe_import_options import;
+  struct abbe_material_store_maker *store; /* takes each file's materials; NULL: they stay here */
 } abbe_import_batch;
 
 /* Adds what the files hold to the table, which may be zeroed; report may be NULL. From a folder
@@ -121,6 +122,12 @@ typedef struct abbe_import_batch {
  * first file's own failure where no file could be used; ABBE_NO_MEMORY. */
 abbe_result abbe_import_batch_run(const abbe_import_batch *batch, abbe_material_table *into,
                                   abbe_report *report, abbe_error *error);
+
+/* Tells materials of one name apart and puts the prefix before all names; the first of those that
+ * are still alike stays. origin[origins]: the files that the table's first materials come from. */
+abbe_result abbe_import_name_all(const abbe_import_batch *batch, abbe_material_table *table,
+                                 const char *const *origin, size_t origins, abbe_report *report,
+                                 abbe_error *error);
 
 /* A table of materials from where it is: compiled in, a file of YAML, or a
  * store of many.

@@ -107,6 +107,7 @@ typedef struct abbe_material {
   char *comment;            /* the source's own remark; may be NULL */
   abbe_material_catalogue catalogue;
   size_t line; /* the record's line in its file, for messages */
+  size_t row;  /* of a store that all else is in but name and line; 0: all is here */
 } abbe_material;
 
 void abbe_material_free(abbe_material *material);

@@ -36,6 +36,25 @@ abbe_result abbe_material_table_append(abbe_material_table *table, abbe_material
   return ABBE_OK;
 }
 
+abbe_result abbe_material_table_move(abbe_material_table *from, abbe_material_table *into,
+                                     abbe_error *error) {
+  if (from->count > MAX_MATERIALS - into->count)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: its %zu materials make more than the %d that a table holds",
+                          from->path, from->count, MAX_MATERIALS);
+  const size_t before = into->count;
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < from->count && result == ABBE_OK; i++)
+    result = abbe_material_table_append(into, &from->material[i], error);
+  while (result != ABBE_OK && into->count > before)
+    abbe_material_free(&into->material[--into->count]);
+  if (result == ABBE_OK && into->count == from->count && into->description == NULL) {
+    into->description = from->description;
+    from->description = NULL;
+  }
+  return result;
+}
+
 static int by_name(const void *a, const void *b) {
   const abbe_material *const *p = a, *const *q = b;
   int order = strcasecmp((*p)->name, (*q)->name);

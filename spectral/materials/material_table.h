@@ -45,6 +45,11 @@ void abbe_material_table_free(abbe_material_table *table);
 abbe_result abbe_material_table_append(abbe_material_table *table, abbe_material *material,
                                        abbe_error *error);
 
+/* Moves all of `from` to the end of `into`, or nothing; its description too where `into` had
+ * neither materials nor one. ABBE_INVALID_ARGUMENT where they are more than a table holds. */
+abbe_result abbe_material_table_move(abbe_material_table *from, abbe_material_table *into,
+                                     abbe_error *error);
+
 /* Drops every material whose name (whatever the case) stands earlier in the table, with a note of
  * kind SKIPPED for each; report may be NULL. */
 abbe_result abbe_material_table_unique(abbe_material_table *table, abbe_report *report,

@@ -37,10 +37,21 @@ abbe_result abbe_material_store_read_names(const char *path, abbe_material_table
 /* Whether a file of this name is to be a store: it ends in .sqlite. */
 bool abbe_material_store_is_name(const char *path);
 
-/* Writes the table to the stream; it is made in memory before. ABBE_INVALID_ARGUMENT for a material
- * that abbe_material_check does not pass and for a name that stands twice (whatever the case);
- * ABBE_IO where the stream fails; ABBE_NO_MEMORY. */
+/* Writes the table to the stream; it is made in a file without a name before, in the folder TMPDIR
+ * or /tmp. ABBE_INVALID_ARGUMENT for a material that abbe_material_check does not pass and for a
+ * name that stands twice (whatever the case); ABBE_IO where a file fails; ABBE_NO_MEMORY. */
 abbe_result abbe_material_store_write(const abbe_material_table *table, FILE *to,
                                       abbe_error *error);
+
+/* The same row by row, of more than memory holds. begin; put of each, which abbe_material_check has
+ * passed and of which its name, line and row alone stay in memory; end with the table of those that
+ * are kept, by the names that they have by then, each once. drop frees it at any time. */
+typedef struct abbe_material_store_maker abbe_material_store_maker;
+abbe_result abbe_material_store_begin(abbe_material_store_maker **out, abbe_error *error);
+abbe_result abbe_material_store_put(abbe_material_store_maker *maker, abbe_material *material,
+                                    abbe_error *error);
+abbe_result abbe_material_store_end(abbe_material_store_maker *maker,
+                                    const abbe_material_table *table, FILE *to, abbe_error *error);
+void abbe_material_store_drop(abbe_material_store_maker *maker);
 
 #endif

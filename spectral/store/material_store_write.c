@@ -2,6 +2,7 @@
 
 #include "spectral/store/material_store_columns.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -9,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/types.h>
+#include <unistd.h>
 
 bool abbe_material_store_is_name(const char *path) {
   const char *dot = strrchr(path, '.');
@@ -176,31 +179,118 @@ static int bind_material(sqlite3_stmt *q, const abbe_material *m) {
   return code == SQLITE_OK ? bind_catalogue(q, &m->catalogue) : code;
 }
 
+/* ---- a file row by row ---- */
+
+/* Of a file without a name, so that nothing is left of it wherever the program ends. */
+struct abbe_material_store_maker {
+  sqlite3 *db;
+  sqlite3_stmt *insert;
+  int fd;
+  size_t rows;
+};
+
+static abbe_result execute(sqlite3 *db, const char *sql, abbe_error *error) {
+  int code = sqlite3_exec(db, sql, NULL, NULL, NULL);
+  return code == SQLITE_OK ? ABBE_OK : abbe_store_fail(db, code, "the store", error);
+}
+
 #define ASKED(name, type) ", ?"
 
-static abbe_result insert(sqlite3 *db, const abbe_material_table *table, abbe_error *error) {
-  sqlite3_stmt *q = NULL;
-  abbe_result result =
-      abbe_store_prepare(db, "INSERT INTO materials VALUES(NULL" ABBE_STORE_COLUMNS(ASKED) ")",
-                         "the store", &q, error);
-  for (size_t i = 0; i < table->count && result == ABBE_OK; i++) {
-    const abbe_material *m = &table->material[i];
-    result = abbe_material_check(m, error);
-    if (result == ABBE_OK && m->fluorescence.rows > 0)
-      result =
-          abbe_error_set(error, ABBE_UNSUPPORTED,
-                         "%s: a store has no place for a re-radiation matrix; YAML has", m->name);
-    if (result != ABBE_OK) break;
-    sqlite3_reset(q);
-    sqlite3_clear_bindings(q);
-    int code = bind_material(q, m);
-    if (code == SQLITE_OK) code = sqlite3_step(q);
-    if (code == SQLITE_CONSTRAINT)
-      result = abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the name '%s' stands twice", m->name);
-    else if (code != SQLITE_DONE)
-      result = abbe_store_fail(db, code, m->name, error);
+static abbe_result begin(abbe_material_store_maker *s, const char *path, abbe_error *error) {
+  char sql[256];
+  int code = sqlite3_open_v2(path, &s->db, SQLITE_OPEN_READWRITE, NULL);
+  if (code != SQLITE_OK) return abbe_store_fail(s->db, code, path, error);
+  snprintf(sql, sizeof sql,
+           "PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA application_id=%d; "
+           "PRAGMA user_version=%d; BEGIN",
+           ABBE_STORE_APPLICATION, ABBE_STORE_VERSION);
+  ABBE_TRY(execute(s->db, sql, error));
+  ABBE_TRY(execute(s->db, ABBE_STORE_ABOUT ";" ABBE_STORE_MATERIALS, error));
+  return abbe_store_prepare(s->db,
+                            "INSERT INTO materials VALUES(NULL" ABBE_STORE_COLUMNS(ASKED) ")",
+                            "the store", &s->insert, error);
+}
+
+abbe_result abbe_material_store_begin(abbe_material_store_maker **out, abbe_error *error) {
+  const char *folder = getenv("TMPDIR");
+  char path[4096];
+  abbe_material_store_maker *s = calloc(1, sizeof *s);
+  *out = s;
+  if (s == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a store");
+  snprintf(path, sizeof path, "%s/abbe-store-XXXXXX",
+           folder != NULL && folder[0] != '\0' ? folder : "/tmp");
+  s->fd = mkstemp(path);
+  if (s->fd < 0)
+    return abbe_error_set(error, ABBE_IO,
+                          "%s: no file can be made there: %s; TMPDIR may name another folder", path,
+                          strerror(errno));
+  const abbe_result result = begin(s, path, error);
+  unlink(path);
+  return result;
+}
+
+void abbe_material_store_drop(abbe_material_store_maker *s) {
+  if (s == NULL) return;
+  sqlite3_finalize(s->insert);
+  sqlite3_close(s->db);
+  if (s->fd >= 0) close(s->fd);
+  free(s);
+}
+
+static int insert(abbe_material_store_maker *s, const abbe_material *m, const char *name) {
+  sqlite3_reset(s->insert);
+  sqlite3_clear_bindings(s->insert);
+  int code = bind_material(s->insert, m);
+  if (code == SQLITE_OK) code = bind_text(s->insert, ABBE_STORE_name, name);
+  if (code == SQLITE_OK) code = sqlite3_step(s->insert);
+  s->rows += code == SQLITE_DONE;
+  return code;
+}
+
+static abbe_result check_place(const abbe_material *m, abbe_error *error) {
+  if (m->fluorescence.rows == 0) return ABBE_OK;
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "%s: a store has no place for a re-radiation matrix; YAML has", m->name);
+}
+
+abbe_result abbe_material_store_put(abbe_material_store_maker *s, abbe_material *m,
+                                    abbe_error *error) {
+  ABBE_TRY(check_place(m, error));
+  char apart[32]; /* no name of a material has such a letter */
+  snprintf(apart, sizeof apart, "\x01%zu", s->rows + 1);
+  int code = insert(s, m, m->name);
+  if (code == SQLITE_CONSTRAINT) code = insert(s, m, apart);
+  if (code != SQLITE_DONE) return abbe_store_fail(s->db, code, m->name, error);
+  abbe_material kept = {.name = m->name, .line = m->line, .row = s->rows};
+  m->name = NULL;
+  abbe_material_free(m);
+  *m = kept;
+  return ABBE_OK;
+}
+
+/* The names of rows that stay; first apart, for a new one may be another's old one. The others go.
+ */
+static abbe_result name_rows(abbe_material_store_maker *s, const abbe_material_table *table,
+                             abbe_error *error) {
+  static const char *const steps[] = {
+      "UPDATE materials SET name=char(1)||id WHERE id=?1 AND name IS NOT ?2 COLLATE BINARY",
+      "UPDATE materials SET name=?2 WHERE id=?1 AND name IS NOT ?2 COLLATE BINARY",
+      "DELETE FROM materials WHERE name LIKE char(1)||'%'"};
+  abbe_result result = ABBE_OK;
+  for (int step = 0; step < 3 && result == ABBE_OK; step++) {
+    sqlite3_stmt *q = NULL;
+    result = abbe_store_prepare(s->db, steps[step], "the store", &q, error);
+    for (size_t i = 0; i < (step < 2 ? table->count : 1) && result == ABBE_OK; i++) {
+      const abbe_material *m = step < 2 ? &table->material[i] : NULL;
+      int code = sqlite3_reset(q);
+      if (m != NULL) code = sqlite3_bind_int64(q, 1, (sqlite3_int64)m->row);
+      if (m != NULL && code == SQLITE_OK)
+        code = sqlite3_bind_text(q, 2, m->name, -1, SQLITE_STATIC);
+      if (code == SQLITE_OK) code = sqlite3_step(q);
+      if (code != SQLITE_DONE) result = abbe_store_fail(s->db, code, "the store", error);
+    }
+    sqlite3_finalize(q);
   }
-  sqlite3_finalize(q);
   return result;
 }
 
@@ -216,34 +306,46 @@ static abbe_result describe(sqlite3 *db, const char *description, abbe_error *er
   return result;
 }
 
-static abbe_result execute(sqlite3 *db, const char *sql, abbe_error *error) {
-  int code = sqlite3_exec(db, sql, NULL, NULL, NULL);
-  return code == SQLITE_OK ? ABBE_OK : abbe_store_fail(db, code, "the store", error);
+static abbe_result finish(abbe_material_store_maker *s, const char *description, FILE *to,
+                          abbe_error *error) {
+  char bytes[1 << 15];
+  ssize_t count;
+  ABBE_TRY(describe(s->db, description, error));
+  ABBE_TRY(execute(s->db, "COMMIT", error));
+  for (off_t at = 0; (count = pread(s->fd, bytes, sizeof bytes, at)) > 0; at += count)
+    fwrite(bytes, 1, (size_t)count, to);
+  if (count == 0 && fflush(to) == 0 && !ferror(to)) return ABBE_OK;
+  return abbe_error_set(error, ABBE_IO, "the store could not be written");
 }
 
-/* Made in memory, so that the file is written as every other, beside its target. */
+abbe_result abbe_material_store_end(abbe_material_store_maker *s, const abbe_material_table *table,
+                                    FILE *to, abbe_error *error) {
+  ABBE_TRY(name_rows(s, table, error));
+  return finish(s, table->description, to, error);
+}
+
+static abbe_result insert_all(abbe_material_store_maker *s, const abbe_material_table *table,
+                              abbe_error *error) {
+  for (size_t i = 0; i < table->count; i++) {
+    const abbe_material *m = &table->material[i];
+    ABBE_TRY(abbe_material_check(m, error));
+    ABBE_TRY(check_place(m, error));
+    const int code = insert(s, m, m->name);
+    if (code == SQLITE_CONSTRAINT)
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the name '%s' stands twice", m->name);
+    if (code != SQLITE_DONE) return abbe_store_fail(s->db, code, m->name, error);
+  }
+  return ABBE_OK;
+}
+
 abbe_result abbe_material_store_write(const abbe_material_table *table, FILE *to,
                                       abbe_error *error) {
-  sqlite3 *db = NULL;
-  char sql[256];
-  snprintf(sql, sizeof sql, "PRAGMA application_id=%d; PRAGMA user_version=%d; BEGIN",
-           ABBE_STORE_APPLICATION, ABBE_STORE_VERSION);
-  int code = sqlite3_open_v2(":memory:", &db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, NULL);
-  abbe_result result =
-      code == SQLITE_OK ? execute(db, sql, error) : abbe_store_fail(db, code, "it", error);
-  if (result == ABBE_OK) result = execute(db, ABBE_STORE_ABOUT ";" ABBE_STORE_MATERIALS, error);
-  if (result == ABBE_OK) result = describe(db, table->description, error);
-  if (result == ABBE_OK) result = insert(db, table, error);
-  if (result == ABBE_OK) result = execute(db, "COMMIT", error);
-  sqlite3_int64 size = 0;
-  unsigned char *bytes = result == ABBE_OK ? sqlite3_serialize(db, "main", &size, 0) : NULL;
-  if (result == ABBE_OK && bytes == NULL)
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a store");
-  if (result == ABBE_OK) fwrite(bytes, 1, (size_t)size, to);
-  sqlite3_free(bytes);
-  sqlite3_close(db);
-  if (result != ABBE_OK || (fflush(to) == 0 && !ferror(to))) return result;
-  return abbe_error_set(error, ABBE_IO, "the store could not be written");
+  abbe_material_store_maker *s = NULL;
+  abbe_result result = abbe_material_store_begin(&s, error);
+  if (result == ABBE_OK) result = insert_all(s, table, error);
+  if (result == ABBE_OK) result = finish(s, table->description, to, error);
+  abbe_material_store_drop(s);
+  return result;
 }
 
 /* How SQLite's failures are reported. */

@@ -39,6 +39,31 @@ TEST(only_decimal_numbers_are_read) {
   assert_true(abbe_number_read("1e999", &end, &value) && isinf(value));
 }
 
+/* Short decimals are read, and tidied, without the C library, to the same bits. */
+TEST(short_decimals_are_the_c_library_s) {
+  srand(2);
+  for (int i = 0; i < 200000; i++) {
+    char text[80], tidied[40];
+    const int digits = 1 + rand() % 18, power = rand() % 60 - 30;
+    const double number = ldexp((double)rand() / RAND_MAX - 0.5, rand() % 40 - 10);
+    if (i % 2 == 0)
+      snprintf(text, sizeof text, "%.*f", digits, number);
+    else
+      snprintf(text, sizeof text, "%.*g%s%d,", digits, number, i % 4 == 1 ? "e" : "E+",
+               i % 4 == 1 ? power : abs(power));
+    char *right_end;
+    const char *end;
+    double value, right = strtod(text, &right_end);
+    if (!abbe_number_read(text, &end, &value) || end != right_end ||
+        memcmp(&value, &right, sizeof value) != 0)
+      fail_msg("'%s' is read as %.17g", text, value);
+    right *= i % 3 == 0 ? 1000 : 1;
+    snprintf(tidied, sizeof tidied, "%.15g", right);
+    if (isfinite(right) && abbe_number_tidy(right) != strtod(tidied, NULL))
+      fail_msg("%.17g is tidied to %.17g", right, abbe_number_tidy(right));
+  }
+}
+
 TEST(lengths_have_units) {
   static const struct {
     const char *text;
