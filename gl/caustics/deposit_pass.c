@@ -182,6 +182,8 @@ static void tell_batch(const abbe_deposit_pass *pass, size_t light, const abbe_h
       .bridges = plan->fills,
       .doubts = plan->layers || plan->bvh};
   abbe_view_pack(&state->map.view, p->view);
+  for (int i = 0; i < 3; i++) p->depth[i] = p->view[3] > 0.5f ? p->view[12 + i] : 0;
+  p->depth[3] = p->view[3] > 0.5f ? 0 : 1;
   for (size_t k = 0; k < tiles->count; k++)
     abbe_receiver_tile_pack(&tiles->tile[k],
                             spectra->scene->charts.parallelogram[tiles->tile[k].chart_side / 2],
@@ -245,6 +247,7 @@ static abbe_result deposit_here(abbe_deposit_pass *pass, size_t light, const abb
   const abbe_splat_source source = {.list = abbe_path_splats_list,
                                     .from = &paths,
                                     .count = paths.count,
+                                    .step = ABBE_PATHS,
                                     .most = abbe_path_splats_most(&paths)};
   abbe_result result = ABBE_OK;
   if (m.whole) result = abbe_splat_sums_add(&sums, &source, entry, goes_on, gpu, error);

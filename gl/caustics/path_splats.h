@@ -6,6 +6,7 @@
 
 #include "gl/caustics/splat_sums.h"
 
+enum { ABBE_PATHS = 8 };      /* that are laid side by side */
 enum { ABBE_PATH_TINTS = 3 }; /* stuffs of which a hit says how much its path passed, at most */
 
 /* Photon of photons.glsl. */
@@ -28,12 +29,14 @@ typedef struct abbe_path_splats {
   int grid[2], map_size, map_levels, warp_steps, steps;
   int sample_first, sample_count, interval_first, interval_end, nodes, fine_nodes;
   float unit, ledger_unit; /* W */
+  float depth[4];          /* of the view: what its places are divided by */
   bool bridges, doubts;
 } abbe_path_splats;
 
-/* The splats of one path, at the most. */
+/* The splats of ABBE_PATHS paths, at the most. */
 size_t abbe_path_splats_most(const abbe_path_splats *paths);
-/* An abbe_splat_source's. The entry: interpolated, absorbed and missed, in ledger_unit. */
-size_t abbe_path_splats_list(const void *paths, size_t i, uint32_t *splats, int64_t entry[3]);
+/* An abbe_splat_source's, of the paths from `first` on. The entry: interpolated, absorbed and
+ * missed, in ledger_unit. */
+size_t abbe_path_splats_list(const void *paths, size_t first, abbe_splat *splats, int64_t entry[3]);
 
 #endif

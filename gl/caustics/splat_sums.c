@@ -25,6 +25,7 @@ typedef struct batch {
   float off[3][2][PARTS]; /* where X, Y and Z lie */
   float per_size[PARTS];
   int32_t units[3][PARTS], side[PARTS], first[PARTS];
+  /* Numbers of a part's least texel, and how many it is from there to its right and above. */
   int32_t texel[3][PARTS], right[3][PARTS], above[3][PARTS], share[3][4][PARTS];
 } batch;
 
@@ -46,50 +47,32 @@ static inline int32_t whole_of(float x) {
   return toward_0 - (x < (float)toward_0);
 }
 
-static float half_of(uint32_t bits) {
-  const uint32_t sign = (bits & 0x8000u) << 16, exponent = bits >> 10 & 31u, rest = bits & 1023u;
-  const float small = (float)rest * 0x1p-24f;
-  uint32_t word = (exponent + 112u) << 23 | rest << 13;
-  if (exponent == 0) memcpy(&word, &small, sizeof word);
-  if (exponent == 31) word = 0x7f800000u | rest << 13;
-  word |= sign;
-  float out;
-  memcpy(&out, &word, sizeof out);
-  return out;
-}
-
-static void halves_of(uint32_t word, float out[2]) {
-  out[0] = half_of(word & 0xffffu);
-  out[1] = half_of(word >> 16);
-}
-
 static float length_of(const float v[2]) {
   return sqrtf(v[0] * v[0] + v[1] * v[1]);
 }
 
-static splat splat_at(const uint32_t *word, bool edges) {
-  splat s = {.units = {word[3], word[4], word[5]}, .level = (int)(word[1] & 7u)};
-  float rest[2];
-  halves_of(word[2], s.across);
-  halves_of(word[9], s.shift);
-  halves_of(word[10], s.skew);
-  halves_of(word[11], rest);
+static splat splat_at(const abbe_splat *of, bool edges) {
+  splat s = {.level = of->level};
+  memcpy(s.units, of->units, sizeof s.units);
+  memcpy(s.centre, of->centre, sizeof s.centre);
+  memcpy(s.across, of->across, sizeof s.across);
+  memcpy(s.shift, of->shift, sizeof s.shift);
+  memcpy(s.skew, of->skew, sizeof s.skew);
+  memcpy(s.off, of->off, sizeof s.off);
   s.long_m = length_of(s.across);
   s.skew_m = length_of(s.skew);
-  const float per_m = rest[0] / most(s.long_m, 1e-20f);
+  const float per_m = of->narrow / most(s.long_m, 1e-20f);
   s.beside[0] = -s.across[1] * per_m;
   s.beside[1] = s.across[0] * per_m;
   s.beside_m = length_of(s.beside);
-  s.next_share = clamp(2 * rest[1] - 1, 0, 1);
-  if (!edges && rest[1] > 0) { /* over a whole level, and as coarse in the mean */
-    s.level -= rest[1] < 0.25f ? 1 : 0;
-    const float t = rest[1] < 0.25f ? rest[1] + 0.75f : rest[1] - 0.25f;
+  s.next_share = clamp(2 * of->to_next - 1, 0, 1);
+  if (!edges && of->to_next > 0) { /* over a whole level, and as coarse in the mean */
+    s.level -= of->to_next < 0.25f ? 1 : 0;
+    const float t = of->to_next < 0.25f ? of->to_next + 0.75f : of->to_next - 0.25f;
     s.next_share = t < 1 ? t * t * (3 - 2 * t) : 0;
   }
   const float shift_2 = most(s.shift[0] * s.shift[0] + s.shift[1] * s.shift[1], 1e-20f);
-  for (int k = 0; k < 2; k++) s.centre[k] = (float)(word[k] >> 5) / 32768;
   for (int c = 0; c < 3; c++) {
-    halves_of(word[6 + c], s.off[c]);
     const float leads = s.off[c][0] * s.shift[0] + s.off[c][1] * s.shift[1];
     s.slope[c] = clamp(leads / shift_2, -1.0f / 6, 1.0f / 6);
   }
@@ -224,9 +207,9 @@ SIDE_BY_SIDE static void share_parts(batch *b, const float *lean, int c) {
     const int32_t ix = whole_of(x), iy = whole_of(y), last = b->side[k] - 1;
     const float fx = x - (float)ix, fy = y - (float)iy, gx = 1 - fx, gy = 1 - fy;
     const int32_t lx = ix < 0 ? 0 : ix, ly = iy < 0 ? 0 : iy;
-    b->right[c][k] = ((ix >= 0) & (ix < last)) ? 1 : 0;
-    b->above[c][k] = ((iy >= 0) & (iy < last)) ? last + 1 : 0;
-    b->texel[c][k] = b->first[k] + ly * (last + 1) + lx;
+    b->right[c][k] = ((ix >= 0) & (ix < last)) ? 3 : 0;
+    b->above[c][k] = ((iy >= 0) & (iy < last)) ? 3 * (last + 1) : 0;
+    b->texel[c][k] = 3 * (b->first[k] + ly * (last + 1) + lx) + c;
     const float leans = clamp(lean[k], -least(fx * fy, gx * gy), least(fx * gy, gx * fy));
     const float units = (float)b->units[c][k];
     int32_t rest = b->units[c][k];
@@ -241,24 +224,22 @@ SIDE_BY_SIDE static void share_parts(batch *b, const float *lean, int c) {
   }
 }
 
-static inline void add(uint32_t *word, size_t at, int32_t units, bool wide) {
-  if (!wide) {
-    word[at] += (uint32_t)units;
-    return;
-  }
-  word[2 * at] += (uint32_t)units;
-  word[2 * at + 1] += word[2 * at] < (uint32_t)units;
+static inline void add(uint32_t *word, int32_t units, bool wide) {
+  *word += (uint32_t)units;
+  if (wide) word[1] += *word < (uint32_t)units;
 }
 
 static inline void add_shares(const batch *b, bool wide) {
+  const int words = wide ? 2 : 1;
   for (int k = 0; k < b->count; k++)
     for (int c = 0; c < 3; c++) {
-      const size_t at = 3 * (size_t)b->texel[c][k] + (size_t)c, right = 3 * (size_t)b->right[c][k];
-      const size_t above = 3 * (size_t)b->above[c][k];
-      add(b->word, at, b->share[c][0][k], wide);
-      add(b->word, at + right, b->share[c][1][k], wide);
-      add(b->word, at + above, b->share[c][2][k], wide);
-      add(b->word, at + above + right, b->share[c][3][k], wide);
+      uint32_t *at = b->word + words * (ptrdiff_t)b->texel[c][k];
+      const ptrdiff_t right = words * (ptrdiff_t)b->right[c][k],
+                      above = words * (ptrdiff_t)b->above[c][k];
+      add(at, b->share[c][0][k], wide);
+      add(at + right, b->share[c][1][k], wide);
+      add(at + above, b->share[c][2][k], wide);
+      add(at + above + right, b->share[c][3][k], wide);
     }
 }
 
@@ -369,11 +350,10 @@ static void lay(batch *b, level_light *l) {
       lay_row(b, l, beside, row, l->high == 1 && beside + 1 == g->beside && row + 1 == g->along);
 }
 
-static void add_splat(batch *b, const uint32_t *word) {
+static void add_splat(batch *b, const abbe_splat *listed) {
   const bool edges = b->sums->edges;
-  const unsigned tile = (word[0] & 31u) << 2 | (word[1] >> 3 & 3u);
-  if (tile != b->tile) set_tile(b, tile);
-  const splat s = splat_at(word, edges);
+  if ((unsigned)listed->tile != b->tile) set_tile(b, (unsigned)listed->tile);
+  const splat s = splat_at(listed, edges);
   grid fine = grid_of(s.level, &s, edges);
   if (edges && s.level > 0) {
     const grid finer = grid_of(s.level - 1, &s, edges);
@@ -391,7 +371,8 @@ static void add_splat(batch *b, const uint32_t *word) {
 
 /* A thread's own: where it adds, and what its items have listed. */
 typedef struct worker {
-  uint32_t *word, *splats;
+  uint32_t *word;
+  abbe_splat *splats;
   int64_t entry[3];
 } worker;
 
@@ -405,9 +386,9 @@ SIDE_BY_SIDE __attribute__((flatten)) static void add_items(const abbe_splat_sum
   b.word = w->word;
   b.count = 0;
   set_tile(&b, 0);
-  for (size_t i = first; i < end; i++) {
+  for (size_t i = first; i < end; i += source->step) {
     const size_t count = source->list(source->from, i, w->splats, w->entry);
-    for (size_t k = 0; k < count; k++) add_splat(&b, w->splats + k * ABBE_SPLAT_WORDS);
+    for (size_t k = 0; k < count; k++) add_splat(&b, w->splats + k);
   }
   flush(&b);
 }
@@ -429,7 +410,7 @@ abbe_result abbe_splat_sums_add(const abbe_splat_sums *sums, const abbe_splat_so
                                 int64_t entry[3], bool (*goes_on)(void *user), void *user,
                                 abbe_error *error) {
   const size_t numbers = 3 * sums->texels * (sums->tiles != NULL ? 2 : 1), count = source->count;
-  const size_t list = source->most * ABBE_SPLAT_WORDS;
+  const size_t list = source->most;
   worker of[MOST_THREADS] = {{.word = sums->word, .splats = malloc(list * sizeof *of->splats)}};
   int threads = 1;
   if (of[0].splats == NULL)

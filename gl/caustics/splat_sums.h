@@ -14,6 +14,13 @@
 
 enum { ABBE_SPLAT_WORDS = 12 }; /* of a splat on the list (splat_list.glsl) */
 
+/* What such a splat says (splat_list.glsl), in texels of the finest level and units of the map. */
+typedef struct abbe_splat {
+  float centre[2], across[2], shift[2], skew[2], off[3][2], narrow, to_next;
+  uint32_t units[3];
+  int32_t level, tile; /* tile: its number + 1; 0: none */
+} abbe_splat;
+
 /* MapSums of photon_splat.comp. */
 typedef struct abbe_splat_sums {
   uint32_t *word;
@@ -22,12 +29,12 @@ typedef struct abbe_splat_sums {
   const abbe_receiver_tiles *tiles; /* NULL: no splat lies on one */
 } abbe_splat_sums;
 
-/* Where splats come from: list() writes those of item i, at most `most`, and returns how many; it
- * adds to `entry` what it is to know of them. */
+/* Where splats come from: list() writes those of `step` items from `first` on, at most `most`, and
+ * returns how many; it adds to `entry` what it is to know of them. */
 typedef struct abbe_splat_source {
-  size_t (*list)(const void *from, size_t i, uint32_t *splats, int64_t entry[3]);
+  size_t (*list)(const void *from, size_t first, abbe_splat *splats, int64_t entry[3]);
   const void *from;
-  size_t count, most;
+  size_t count, step, most;
 } abbe_splat_source;
 
 /* entry grows. goes_on is asked every few milliseconds, and ends it where false; NULL: it goes on.

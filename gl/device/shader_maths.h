@@ -67,6 +67,23 @@ static inline uint32_t bits_of(float x) {
   return bits;
 }
 
+/* exp(x) for x of at most 0, to 2e-7 of it, for many side by side. */
+static inline float exponential(float x) {
+  const float in = most(x, -87), t = in * 1.44269504f, turn = 12582912; /* 1.5 x 2^23 */
+  const float whole = (t + turn) - turn,
+              rest = (in - whole * 0.693359375f) + whole * 2.12194440e-4f;
+  const float of =
+      ((((1.9875691e-4f * rest + 1.3981999e-3f) * rest + 8.3334519e-3f) * rest + 4.1665796e-2f) *
+           rest +
+       1.6666665e-1f) *
+          rest +
+      0.5f;
+  const int32_t power = ((int32_t)whole + 127) << 23;
+  float scale;
+  memcpy(&scale, &power, sizeof scale);
+  return (of * rest * rest + rest + 1) * scale;
+}
+
 static inline v3 normalize(v3 a) {
   return times(1 / length(a), a);
 }
@@ -74,20 +91,21 @@ static inline v3 cross(v3 a, v3 b) {
   return (v3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/* Without branches, for many side by side. */
 static inline float cos2_refracted(float cos_i, float eta) {
-  const float along = eta * cos_i;
-  return eta <= 1 || along < 1 ? (1 - eta) * (1 + eta) + along * along
-                               : 1 - eta * eta * ((1 - cos_i) * (1 + cos_i));
+  const float along = eta * cos_i, by_along = (1 - eta) * (1 + eta) + along * along;
+  const float by_sine = 1 - eta * eta * ((1 - cos_i) * (1 + cos_i));
+  return (eta <= 1) | (along < 1) ? by_along : by_sine;
 }
 
 static inline float fresnel(float cos_i, float eta) {
   const float c = clamp(cos_i, 0, 1), t2 = cos2_refracted(c, eta);
-  if (eta == 1) return 0;
-  if (t2 <= 0 || c == 0) return 1;
-  const float t = sqrtf(least(t2, 1)), s = eta * c + t, p = eta * t + c;
+  const float t = sqrtf(clamp(t2, 0, 1)), s = eta * c + t, p = eta * t + c;
   const float contrast = (eta - 1) * (eta + 1), r_s = contrast / (s * s);
   const float r_p = contrast / (p * p) * (c * c * (1 + eta * eta) - eta * eta);
-  return least(0.5f * (r_s * r_s + r_p * r_p), 1);
+  const float reflected = least(0.5f * (r_s * r_s + r_p * r_p), 1);
+  const float whole = t2 <= 0 ? 1 : reflected;
+  return eta == 1 ? 0 : whole;
 }
 
 /* optics.glsl: d travels, n is on the side that it comes from. */

@@ -3,6 +3,7 @@
  * texels. The device and the processor's threads add the same.
  */
 #include "gl/caustics/splat_sums.h"
+#include "scenes/volume/half.h"
 #include "tests/gl/glsl.h"
 
 #include <inttypes.h>
@@ -47,8 +48,25 @@ static uint32_t list[4 + MOST * WORDS], sums[12 * TEXELS], here[12 * TEXELS];
 static abbe_receiver_tiles tiles = {
     .count = 2, .tile = {{.rect = {0, 64, 32, 96}}, {.rect = {64, 96, 0, 128}}}};
 
-static size_t listed(const void *from, size_t i, uint32_t *splats, int64_t entry[3]) {
-  memcpy(splats, (const uint32_t *)from + i * WORDS, WORDS * sizeof *splats);
+static float value_at(const uint32_t *word, int half) {
+  return (float)abbe_half_value((uint16_t)(*word >> 16 * half));
+}
+
+/* What splat_list.glsl lists. */
+static size_t listed(const void *from, size_t i, abbe_splat *to, int64_t entry[3]) {
+  const uint32_t *word = (const uint32_t *)from + i * WORDS;
+  *to = (abbe_splat){.narrow = value_at(word + 11, 0),
+                     .to_next = value_at(word + 11, 1),
+                     .level = word[1] & 7u,
+                     .tile = (int32_t)((word[0] & 31u) << 2 | (word[1] >> 3 & 3u))};
+  for (int k = 0; k < 2; k++) {
+    to->centre[k] = (float)(word[k] >> 5) / 32768;
+    to->across[k] = value_at(word + 2, k);
+    to->shift[k] = value_at(word + 9, k);
+    to->skew[k] = value_at(word + 10, k);
+    for (int c = 0; c < 3; c++) to->off[c][k] = value_at(word + 6 + c, k);
+  }
+  memcpy(to->units, word + 3, sizeof to->units);
   entry[0]++;
   return 1;
 }
@@ -60,7 +78,7 @@ static void run_here(size_t count, bool edges, bool wide, bool on_tiles) {
                                    .wide = wide, .edges = edges, .tiles = on_tiles ? &tiles : NULL);
   memset(here, 0, sizeof here);
   const abbe_splat_source source =
-      FIELDS(.list = listed, .from = list + 4, .count = count, .most = 1);
+      FIELDS(.list = listed, .from = list + 4, .count = count, .step = 1, .most = 1);
   int64_t entry[3] = {0, 0, 0};
   OK(abbe_splat_sums_add(&s, &source, entry, NULL, NULL, &error));
   assert_int_equal(entry[0], count);
