@@ -124,12 +124,24 @@ TEST(what_reaches_outside_is_refused) {
 }
 
 TEST(names_of_encodings_are_heeded) {
-  OWNED(abbe_cut, cut) = read(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<GemCutStudio><info title=\"\xc3\xa9\"/><tier "
-      "angle='45' depth='1'><facet index_angle='0'/><facet index_angle='1'/><facet "
-      "index_angle='2'/><facet index_angle='3'/></tier></GemCutStudio>");
-  assert_string_equal(cut.heading[0], "\xc3\xa9");
-  assert_int_equal(cut.gear, 96);
+  static const struct {
+    const char *head, *title, *read;
+  } rows[] = {{"<?xml version=\"1.0\" encoding=\"UTF-8\"?>", "\xc3\xa9", "\xc3\xa9"},
+              {"<?xml version=\"1.0\" encoding=\"CP1252\"?>", "\x80\xe9", "\xe2\x82\xac\xc3\xa9"},
+              {"<?xml version=\"1.0\" encoding=\"Windows-1252\"?>", "\x85", "\xe2\x80\xa6"},
+              {"\xef\xbb\xbf", "\xc3\xa9", "\xc3\xa9"},
+              {"", "\x93", "\xe2\x80\x9c"}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    OWNED(abbe_cut, cut) =
+        read(printed("%s<GemCutStudio><info title=\"%s\"/><tier angle='45' depth='1'><facet "
+                     "index_angle='0'/><facet index_angle='1'/><facet index_angle='2'/><facet "
+                     "index_angle='3'/></tier></GemCutStudio>",
+                     rows[i].head, rows[i].title));
+    assert_string_equal(cut.heading[0], rows[i].read);
+    assert_int_equal(cut.gear, 96);
+  }
+  refuse("<?xml version=\"1.0\" encoding=\"koi8-q\"?><GemCutStudio/>", ABBE_PARSE,
+         "unknown encoding");
 }
 
 /* What is written has the same planes, but for size and height, and is read back as the same stone.

@@ -82,15 +82,17 @@ TEST(a_colour_at_a_depth_is_an_attenuation) {
 }
 
 TEST(what_is_written_is_read_again) {
-  static const char *const names[] = {"diamond", "n-bk7", "emerald", "diamond-fluorescent"};
-  abbe_material some[4];
+  static const char *const names[] = {"gold", "diamond", "n-bk7", "emerald", "diamond-fluorescent"};
+  abbe_material all[5], *some = all + 1;
   char *text = NULL;
   size_t size = 0;
-  for (int i = 0; i < 4; i++) some[i] = *find_material(&shipped, names[i]);
-  const abbe_material_table written = {.count = 4, .material = some};
+  for (int i = 0; i < 5; i++) all[i] = *find_material(&shipped, names[i]);
+  const abbe_material_table written = {.count = 5, .material = all};
+  clean();
   FILE *to = open_memstream(&text, &size);
   OK(abbe_mtlx_write(&written, to, &report, &error));
   fclose(to);
+  assert_non_null(strstr(report.note[0].text, "it is a conductor"));
   assert_non_null(strstr(report.note[report.count - 2].text, "without its fluorescence"));
   OK(import(text, &error));
   free(text);
@@ -155,6 +157,9 @@ TEST(what_cannot_be_used_is_said) {
     const abbe_note *last = &report.note[report.count - 1];
     assert_non_null(strstr(last->text, skipped[i].note));
   }
+  char deep[2000] = "<?xml version=\"1.0\"?>";
+  for (int i = 0; i < 65; i++) strcat(deep, "<materialx>");
+  REFUSED(ABBE_PARSE, "more than 64 deep", import(deep, &error));
   REFUSED(ABBE_SCHEMA, "holds none of", import(DOCUMENT("<nodedef/>"), &error));
   REFUSED(ABBE_PARSE, "a.mtlx:3: mismatched tag", import(DOCUMENT("<gltf_pbr></a>"), &error));
   REFUSED(ABBE_PARSE, "a.mtlx:3: 'ior' is 'high'; one number is right",
