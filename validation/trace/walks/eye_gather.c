@@ -15,18 +15,30 @@ typedef struct gathering {
   float band[ABBE_BANDS_MAX];
 } gathering;
 
+/* What the path's media leave of light so many windows beside its own wavelength, -1 to 1, by what
+ * they leave of that. */
+static float left_beside(const abbe_eye_path *p, double off) {
+  const float at = (float)(0.5 * (off + 1) * (ABBE_EYE_BEYOND - 1));
+  const int k = (int)fminf(fmaxf(roundf(at), 1), ABBE_EYE_BEYOND - 2);
+  const float *d = p->beyond + k, f = at - (float)k;
+  const float bend = d[1] - 2 * d[0] + d[-1]; /* a parabola by the three nearest */
+  return expf(-(d[0] + 0.5f * f * (d[1] - d[-1] + f * bend)));
+}
+
 /* How much a photon of that step counts for the path: of one wavelength, in a window of wavelengths
- * around it, cut at the ends of the range. */
+ * around it, cut at the ends of the range. The path is weakened as light of the photon's own
+ * wavelength: a coloured stone lets pass what it has let in, and the window would mix that with
+ * what it takes. */
 static float window(const abbe_eye_walk *w, const abbe_eye_path *p, size_t step) {
   if (!p->dispersed) return 1;
   const size_t steps = w->sampling->steps;
   const double *nm = w->sampling->lambda_nm;
-  double own = nm[p->step] + (double)p->within * (nm[p->step + 1] - nm[p->step]);
+  double own = abbe_spectral_sampling_lambda(w->sampling, p->step, p->within);
   double other = 0.5 * (nm[step] + nm[step + 1]);
   if (fabs(own - other) > w->window_nm) return 0;
   double span = fmin(other + w->window_nm, nm[steps]) - fmax(other - w->window_nm, nm[0]);
   double density = 1 / ((double)steps * (nm[p->step + 1] - nm[p->step]));
-  return (float)(1 / (span * density));
+  return (float)(1 / (span * density)) * left_beside(p, (other - own) / w->window_nm);
 }
 
 /* As what glows within a step in light of that colour. */

@@ -26,6 +26,41 @@ bool abbe_eye_trace(const abbe_eye_context *c, const abbe_eye_path *p, abbe_hit 
   return true;
 }
 
+static float extinction_at(const abbe_media *m, int medium, const abbe_eye_path *p, uint32_t step,
+                           float within) {
+  return abbe_haze_is(&m->haze) ? abbe_media_extinction(m, medium, step, within, p->d, p->wave)
+                                : abbe_media_loss(m, medium, step, within, p->d, p->wave);
+}
+
+/* The step that has the wavelength, or the nearest. */
+static uint32_t step_of(const abbe_spectral_sampling *s, double nm, float *within) {
+  size_t low = 0, high = s->steps;
+  while (high - low > 1) {
+    const size_t middle = (low + high) / 2;
+    *(s->lambda_nm[middle] <= nm ? &low : &high) = middle;
+  }
+  const double from = s->lambda_nm[low], to = s->lambda_nm[low + 1];
+  *within = (float)fmin(fmax((nm - from) / (to - from), 0), 1);
+  return (uint32_t)low;
+}
+
+void abbe_eye_weaken(const abbe_eye_context *c, abbe_eye_path *p, float length) {
+  const abbe_eye_walk *w = c->w;
+  const abbe_media *m = w->media;
+  const int medium = abbe_media_of(p->inside);
+  const float whole = extinction_at(m, medium, p, p->step, p->within);
+  p->share *= expf(-length * whole);
+  if (!p->dispersed || w->grid == NULL || (medium < 0 && !abbe_haze_is_coloured(&m->haze, medium)))
+    return;
+  const double own = abbe_spectral_sampling_lambda(w->sampling, p->step, p->within);
+  for (int k = 0; k < ABBE_EYE_BEYOND; k++) {
+    float within;
+    const double off = 2.0 * k / (ABBE_EYE_BEYOND - 1) - 1;
+    const uint32_t step = step_of(w->sampling, own + off * w->window_nm, &within);
+    p->beyond[k] += length * (extinction_at(m, medium, p, step, within) - whole);
+  }
+}
+
 /* By the share that is turned on all of the way, at a place that the scattering draws; roulette
  * takes what is faint. */
 bool abbe_eye_turn(const abbe_eye_context *c, abbe_eye_path *p, float length,
@@ -86,6 +121,7 @@ bool abbe_eye_glow(const abbe_eye_context *c, const abbe_eye_path *p, float leng
                  abbe_glow_rate(m, medium, from->step, from->within, from->d, from->wave);
   from->shown = p->glows ? p->shown : p->step;
   from->glows = true;
+  memset(from->beyond, 0, sizeof from->beyond);
   from->lobe = 0;
   memset(from->stokes, 0, sizeof from->stokes);
   from->steps++;

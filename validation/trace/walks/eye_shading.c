@@ -259,8 +259,7 @@ void abbe_eye_haze(const abbe_eye_context *c, abbe_eye_path *p, float length, bo
     if (w->shafts != NULL && end > from && end < INFINITY)
       abbe_eye_gather_shafts(c, &own, medium, from, end, radius);
   }
-  p->share *= expf(-(to - from) *
-                   abbe_media_extinction(w->media, medium, p->step, p->within, p->d, p->wave));
+  abbe_eye_weaken(c, p, to - from);
 }
 
 /* Density of a light's even points over its area by solid angle, where unit d meets it at p, 1/sr;

@@ -10,6 +10,8 @@
 #include "validation/trace/transport/random.h"
 #include "validation/trace/walks/eye_walk.h"
 
+enum { ABBE_EYE_BEYOND = 7 };
+
 /* A path from the camera. Where it is not dispersed it carries the whole spectrum, else one
  * wavelength. */
 typedef struct abbe_eye_path {
@@ -20,8 +22,10 @@ typedef struct abbe_eye_path {
   bool dispersed;
   uint32_t step;
   float within;
-  bool glows;     /* it has gone back from a glow to what excites it: */
-  uint32_t shown; /* the step in which the camera sees that */
+  float beyond[ABBE_EYE_BEYOND]; /* optical depths at wavelengths from one window of gathers below
+                                    its own, evenly, to one above, less its own depth */
+  bool glows;                    /* it has gone back from a glow to what excites it: */
+  uint32_t shown;                /* the step in which the camera sees that */
   abbe_media_set inside;
   float carried; /* matched: what a splitting path would carry */
   uint32_t walls, steps, id;
@@ -64,6 +68,9 @@ static inline void abbe_eye_disperse(abbe_eye_path *p, uint32_t wave) {
 /* What the path meets next, and how far off; false: nothing. */
 bool abbe_eye_trace(const abbe_eye_context *context, const abbe_eye_path *path, abbe_hit *hit,
                     float *length);
+
+/* Takes what the medium absorbs and scatters of the path on its way of that length. */
+void abbe_eye_weaken(const abbe_eye_context *context, abbe_eye_path *path, float length);
 
 /* What a refractor that scatters more than once turns of the path on its way of that length, before
  * it is weakened: as *turned where that goes on. Shares of both branches are those of what came. */

@@ -110,15 +110,6 @@ static bool is_coloured_haze(const abbe_eye_context *c, const abbe_eye_path *p) 
   return abbe_haze_is_coloured(&c->w->media->haze, abbe_media_of(p->inside));
 }
 
-/* Absorption along the way in the medium, by wavelength. */
-static void absorb(const abbe_eye_context *c, abbe_eye_path *p, float length, uint32_t wave) {
-  const abbe_media *m = c->w->media;
-  const int medium = abbe_media_of(p->inside);
-  if (medium < 0 || m->attenuation == NULL) return;
-  abbe_eye_disperse(p, wave);
-  p->share *= expf(-length * abbe_media_loss(m, medium, p->step, p->within, p->d, p->wave));
-}
-
 /* ---- branches ---- */
 
 /* Paths that wait for their turn. The smaller branch is followed first, so that few wait. */
@@ -274,8 +265,9 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
       b->path[b->count++] = glow;
     else if (glows && abbe_eye_chooses(c, p, &glow))
       return true;
-  } else if (met) {
-    absorb(c, p, length, bits[1]);
+  } else if (met && p->inside != 0 && c->w->media->attenuation != NULL) {
+    abbe_eye_disperse(p, bits[1]);
+    abbe_eye_weaken(c, p, length);
   }
   if (p->share < b->least) {
     if (!(random[2] * b->least < p->share)) return false;

@@ -377,6 +377,16 @@ TEST(a_slab_mirrors_the_sky) {
   }
 }
 
+/* What absorbs in the scene has these attenuations, 1/m. */
+static void absorb_by(abbe_scene *scene, const double *nm, const double *per_m, size_t count) {
+  for (size_t i = 0; i < scene->table.count; i++) {
+    abbe_spectrum **a = &scene->table.material[i].attenuation;
+    if (*a == NULL) continue;
+    abbe_spectrum_free(*a);
+    OK(abbe_spectrum_make(nm, per_m, count, ABBE_INTERPOLATION_LINEAR, a, &error));
+  }
+}
+
 /* Straight down through a block that lets 0.8 % through, on a floor in ambient light: paths end by
  * roulette below 2 %, and their mean stays Beer-Lambert's. */
 TEST(dark_glass_keeps_its_mean) {
@@ -393,14 +403,7 @@ TEST(dark_glass_keeps_its_mean) {
                                                             "[{translate: [0.1, 0, 0.3]}], "
                                                             "material: smoke}\n");
   f.objects = f.scene.object_count;
-  for (size_t i = 0; i < f.scene.table.count; i++) {
-    abbe_spectrum **a = &f.scene.table.material[i].attenuation;
-    if (*a == NULL) continue;
-    abbe_spectrum_free(*a);
-    assert_int_equal(abbe_spectrum_make((double[]){300, 900}, (double[]){12, 12}, 2,
-                                        ABBE_INTERPOLATION_LINEAR, a, NULL),
-                     ABBE_OK);
-  }
+  absorb_by(&f.scene, (double[]){300, 900}, (double[]){12, 12}, 2);
   f.tracer = make_tracer(
       &f.scene,
       &(abbe_trace_desc){.width = 4, .height = 4, .no_map = true, .threads = 1, .photons = 1});
@@ -408,6 +411,50 @@ TEST(dark_glass_keeps_its_mean) {
   for (int k = 0; k < 3; k++) {
     assert_true(error[k] < 0.02 * want);
     assert_near(mean[k], want, 4 * error[k]);
+  }
+}
+
+/* The sun on a floor under glass whose absorption comes and goes every 80 nm, seen through the
+ * glass: gathered light is weakened as its own wavelength is, both ways, and not as the path's that
+ * gathers it, which may be up to 25 nm off. */
+TEST(what_is_gathered_passes_coloured_glass_twice) {
+  enum { KNOTS = 105, PASSES = 8, SIDE = 16 };
+  static const abbe_trace_desc desc = {.width = SIDE,
+                                       .height = SIDE,
+                                       .no_map = true,
+                                       .photons = 1 << 17,
+                                       .space = ABBE_RGB_SPACE_XYZ};
+  double nm[KNOTS], per_m[KNOTS], want[3] = {0}, sum[3] = {0};
+  const double r = 0.04;
+  OWNED(fixture, f) = {0};
+  f.scene = scene_of(
+      "materials: glass.yaml\n"
+      "camera: {eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 5}\n"
+      "lights:\n- {name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1}\n" FLOOR
+      "- {name: slab, shape: box, size: [0.4, 0.4, 0.1], transform: [{translate: [0, 0, 0.3]}], "
+      "material: smoke}\n");
+  f.objects = f.scene.object_count;
+  for (int k = 0; k < KNOTS; k++) {
+    nm[k] = 320 + 5 * k;
+    per_m[k] = 20 + 15 * cos(2 * ABBE_PI * nm[k] / 80);
+  }
+  absorb_by(&f.scene, nm, per_m, KNOTS);
+  f.tracer = make_tracer(&f.scene, &desc);
+  const abbe_spectral_sampling *s = &f.tracer->sampling;
+  for (size_t i = 0; i < s->steps; i++) {
+    const double at = (0.5 * (s->lambda_nm[i] + s->lambda_nm[i + 1]) - nm[0]) / 5;
+    const size_t k = (size_t)at;
+    const double left = exp(-0.1 * (per_m[k] + (at - (double)k) * (per_m[k + 1] - per_m[k])));
+    const double passes = (1 - r) * (1 - r) * left / (1 - r * r * left * left);
+    for (int c = 0; c < 3; c++)
+      want[c] += (double)s->xyz[i][c] * passes * passes * 0.5 / ABBE_PI / (double)s->steps;
+  }
+  run_passes(f.tracer, PASSES);
+  MADE(abbe_image, picture, abbe_tracer_picture(f.tracer, &picture, &error));
+  for (int c = 0; c < 3; c++) {
+    sum[c] = channel_sum(&picture, c == 0 ? "X" : c == 1 ? "Y" : "Z") / (SIDE * SIDE);
+    print_message("gathered through coloured glass: %.4f of its light\n", sum[c] / want[c]);
+    assert_near(sum[c], want[c], 0.02 * want[c]);
   }
 }
 
