@@ -203,7 +203,7 @@ TEST(layers_of_what_moves) {
   abbe_render_desc desc = FIELDS(.width = 64, .height = 64, .photons = 32, .map_size = 64,
                                  .wavelengths = 3, .supersample = 1, .adaptive = 1,
                                  .energy_share = ABBE_COARSE_SHARE, .model = ABBE_MODEL_LAYERS);
-  OWNED(abbe_scene, scene) = shipped_scene("gem");
+  OWNED(abbe_scene, scene) = scene_of(CAMERA POINT_LIGHT FLOOR BALL("crown"));
   for (size_t i = 0; i < 2; i++) {
     desc.coarse = i == 0 ? ABBE_COARSE_NONE : ABBE_COARSE_EYE;
     HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);

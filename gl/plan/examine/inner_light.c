@@ -29,16 +29,19 @@ void abbe_path_limits_choose(const abbe_scene *scene, const abbe_render_desc *as
   const bool thesis = abbe_method_of(plan->desc.profile)->own_passes;
   const size_t waves = plan->crystals && !thesis ? 2 : 1;
   char inside[64] = "";
-  /* What a view's layers do not show is missed more with every reflection: fewer are worth it. */
+  /* What a view's layers do not show is missed more with every reflection: fewer are worth it,
+   * unless planes beside them show all. */
   if (thesis || plan->desc.exits == 0)
-    plan->desc.exits = thesis ? 1 : plan->layers ? ABBE_PLAN_LAYER_EXITS : ABBE_PLAN_EXITS;
+    plan->desc.exits = thesis                          ? 1
+                       : plan->layers && !plan->convex ? ABBE_PLAN_LAYER_EXITS
+                                                       : ABBE_PLAN_EXITS;
   if (is_lone_solid(scene, plan) && abbe_plan_no_refraction(plan) == NULL)
     abbe_number_format(inside, sizeof inside, "; %.2g %% of it is still inside then",
                        100 * abbe_inner_light_plan(scene, asked, plan));
   /* Layers show less and less of what is inside; and a request for few exits shows them. A smaller
    * share brings multi-refractor paths nothing that what is left does not show. */
   const bool few = asked != NULL && asked->exits > 0 && asked->exits < ABBE_PLAN_EXITS;
-  const bool eye_goes_on = !thesis && !plan->layers && !few;
+  const bool eye_goes_on = !thesis && (!plan->layers || plan->convex) && !few;
   plan->eye_exits = eye_goes_on ? eye_exits(plan) : plan->desc.exits;
   plan->eye_share = plan->desc.energy_share;
   if (!plan->multi_refractor_paths) plan->eye_share = fmin(plan->eye_share, ABBE_PLAN_EYE_SHARE);

@@ -149,6 +149,9 @@ static abbe_refractor_model mirror_model(const abbe_scene *scene, const abbe_obj
 
 static abbe_refractor_model model_of(const abbe_object *object, const abbe_plan *plan) {
   if (abbe_method_of(plan->desc.profile)->own_passes) return ABBE_REFRACTOR_LAYERS;
+  /* Planes are followed as fast as layers, and a stone's few pixels do not show its facets. */
+  if (plan->desc.model == ABBE_MODEL_LAYERS && object->exact.kind == ABBE_EXACT_CONVEX)
+    return ABBE_REFRACTOR_CONVEX;
   if (plan->desc.model != ABBE_MODEL_AUTO)
     return (abbe_refractor_model)(plan->desc.model - ABBE_MODEL_SPHERE);
   if (plan->multi_refractor_paths && abbe_refractor_films_by_face(object))
@@ -170,7 +173,9 @@ static void write_reason(const abbe_object *object, const abbe_plan *plan, char 
              abbe_profile_name(plan->desc.profile));
     because = only;
   } else if (plan->desc.model != ABBE_MODEL_AUTO) {
-    because = "as asked";
+    because = plan->desc.model == ABBE_MODEL_LAYERS && object->exact.kind == ABBE_EXACT_CONVEX
+                  ? "the object is a convex faceted solid, whose planes say more than layers"
+                  : "as asked";
   } else if (plan->multi_refractor_paths && abbe_refractor_films_by_face(object)) {
     because = "films are on some of its faces";
   } else if (object->exact.kind == ABBE_EXACT_SPHERE) {
@@ -336,7 +341,7 @@ static const abbe_object *find_keeper(const abbe_scene *scene, const abbe_plan *
   for (size_t i = 0; i < plan->refractor_count; i++) {
     const abbe_object *object = &scene->object[plan->refractor_object[i]];
     abbe_material_range range;
-    if (abbe_object_kind_of(object) == ABBE_OBJECT_REFRACTOR &&
+    if (!plan->mirror[i] && plan->model[i] == ABBE_REFRACTOR_LAYERS &&
         abbe_material_range_make(object->material, plan->desc.min_nm, plan->desc.max_nm, &range,
                                  NULL) == ABBE_OK &&
         range.most_n > high)
@@ -351,8 +356,7 @@ static void note_layers(const abbe_scene *scene, abbe_plan *plan) {
   if (keeper != NULL)
     abbe_plan_note(plan,
                    "'%.50s' keeps light for many inner reflections, and layers show few of them: "
-                   "the object is too dark, by a half where it is a cut diamond; any other model "
-                   "follows them",
+                   "the object is too dark; any other model follows them",
                    keeper->name);
 }
 

@@ -70,7 +70,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 /* Exits that are followed at the most, and the share of its light below which a path ends, where
  * the request leaves them open. */
 #define ABBE_PLAN_EXITS 8
-#define ABBE_PLAN_LAYER_EXITS 4 /* where a refractor is known by its layers */
+#define ABBE_PLAN_LAYER_EXITS 4 /* where refractors are known by layers alone */
 #define ABBE_PLAN_SHARE 0.01
 /* As far as they go where a convex solid keeps light inside (gl/plan/examine/examine.h). */
 #define ABBE_PLAN_MOST_EXITS 24
@@ -142,7 +142,7 @@ typedef struct abbe_render_desc {
    * much light inside a convex solid */
   double energy_share;
   /* exits followed at the most; 0: as many as carry energy, at most 8, or up to 24 where a convex
-   * solid keeps light inside (4 where a mesh is known by its layers) */
+   * solid keeps light inside (4 where layers are all that is known of refractors) */
   size_t exits;
   abbe_rgb_space space; /* space of the picture */
   /* whose XYZ the picture's colours are; that of 1931 for methods that are printed with their own
