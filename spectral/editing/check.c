@@ -104,10 +104,31 @@ static void check_density(abbe_check *c) {
   abbe_check_say(c, &f->fix, "give density_g_cm3 in g/cm3: water has 1, quartz 2.65, diamond 3.52");
 }
 
+static void check_three_indices(abbe_check *c) {
+  const abbe_material *m = c->material;
+  const double at_nm[3] = {c->low_nm, 0.5 * (c->low_nm + c->high_nm), c->high_nm};
+  for (int i = 0; i < 3; i++) {
+    const double alpha = abbe_dispersion_n(&m->outer[0], at_nm[i]),
+                 beta = abbe_dispersion_n(&m->dispersion, at_nm[i]),
+                 gamma = abbe_dispersion_n(&m->outer[1], at_nm[i]);
+    if (alpha > 0 && alpha <= beta && beta <= gamma && gamma <= 10) continue;
+    abbe_finding *f = abbe_check_find(c, ABBE_FINDING_BIREFRINGENCE, ABBE_FINDING_WRONG);
+    if (f == NULL) return;
+    abbe_check_say(
+        c, &f->evidence,
+        "at %g nm its indices alpha, beta and gamma are %.6g, %.6g and %.6g; they are to "
+        "ascend from above 0 to at most 10",
+        at_nm[i], alpha, beta, gamma);
+    abbe_check_say(c, &f->fix, "compare 'biaxial' with the source; the record's own index is beta");
+    return;
+  }
+}
+
 /* Calomel, the most birefringent of minerals, has 0.68. */
 static void check_birefringence(abbe_check *c) {
   const abbe_material *m = c->material;
   const double middle_nm = 0.5 * (c->low_nm + c->high_nm);
+  if (abbe_material_is_biaxial(m)) check_three_indices(c);
   if (!abbe_material_is_uniaxial(m)) return;
   const double n_o = abbe_dispersion_n(&m->dispersion, middle_nm);
   const double n_e = abbe_dispersion_n(&m->extraordinary, middle_nm);

@@ -123,6 +123,9 @@ TEST(each_fault_is_found_with_its_fix) {
       {"- {name: a, model: polynomial, coefficients: [2.25, -10, -2], range_nm: [380, 780], "
        "source: s1}",
        ABBE_FINDING_NO_INDEX, ABBE_FINDING_WRONG, "no real index at 380 nm", NULL, NULL},
+      {"- {name: a, model: constant, coefficients: [1.6], biaxial: {alpha: {model: constant, "
+       "coefficients: [1.7]}, gamma: {model: constant, coefficients: [1.65]}}, source: s1}",
+       ABBE_FINDING_BIREFRINGENCE, ABBE_FINDING_WRONG, "are 1.7, 1.6 and 1.65", NULL, NULL},
       {"- {name: a, model: cauchy, coefficients: [0.99, 0.001], range_nm: [380, 780], source: s1}",
        ABBE_FINDING_BELOW_ONE, ABBE_FINDING_WRONG, "0.991644 at 780 nm", NULL, NULL},
       {"- {name: a, model: sellmeier2, coefficients: [0, 1.1, 0.01, 0.9, 60], range_nm: [380, "
