@@ -73,7 +73,7 @@ void abbe_spectral_options_note_unread(const abbe_image *image, const char *laye
   static const char *const what[ABBE_SPECTRAL_UNREAD_COUNT] = {
       "of polarised light",
       "of re-radiation between wavelengths that are no bands of a reflectance",
-      "named as bands are not: S0.550nm is right"};
+      "named as bands are not: S0.550nm is right", "whose wavelength is no number above 0"};
   abbe_spectral_unread unread;
   abbe_spectral_channels_find_unread(image, layer, &unread);
   for (int k = 0; k < ABBE_SPECTRAL_UNREAD_COUNT; k++)

@@ -99,16 +99,19 @@ static double brightest(const abbe_image *image, const abbe_spectral_channels *c
 static void fill(const abbe_image *image, const abbe_spectral_channels *c,
                  const double (*weight)[3], const double *factor, const double matrix[9],
                  abbe_image *out) {
-  const double most = brightest(image, c);
+  double most = 0;
   for (size_t p = 0; p < image->width * image->height; p++) {
     const float *from = image->data + p * image->channels;
     float *to = out->data + p * out->channels;
     double sum[3] = {0};
-    for (size_t i = 0; i < c->terms; i++)
-      for (int k = 0; k < 3; k++) {
-        const double value = (double)from[c->channel[i]];
-        sum[k] += weight[i][k] * (isinf(value) ? copysign(most, value) : value);
+    for (size_t i = 0; i < c->terms; i++) {
+      double value = (double)from[c->channel[i]];
+      if (isinf(value)) {
+        if (most == 0) most = brightest(image, c);
+        value = copysign(most, value);
       }
+      for (int k = 0; k < 3; k++) sum[k] += weight[i][k] * value;
+    }
     abbe_rgb_space_apply(matrix, sum, sum);
     for (int k = 0; k < 3; k++) to[k] = (float)sum[k];
     for (size_t i = 0; i + 3 < out->channels; i++)

@@ -293,6 +293,15 @@ static bool is_reradiation(const char *name) {
   return parse_reradiation(name, nm);
 }
 
+/* "S0.nannm": what ends as a wavelength does and is none. */
+static bool is_no_wavelength(const char *name) {
+  double nm;
+  const char *place = strncmp(name, "S0.", 3) == 0 ? name + 3 : behind_reflective(name);
+  const size_t length = place != NULL ? strlen(place) : 0;
+  return length > 2 && strcmp(place + length - 2, "nm") == 0 &&
+         abbe_spectral_channel_parse(name, &nm) == ABBE_SPECTRAL_NONE && !is_reradiation(name);
+}
+
 static bool is_polarised(const char *name) {
   return name[0] == 'S' && name[1] >= '1' && name[1] <= '3' && name[2] == '.' &&
          parse_place(name + 3) > 0;
@@ -301,7 +310,7 @@ static bool is_polarised(const char *name) {
 void abbe_spectral_channels_find_unread(const abbe_image *image, const char *layer,
                                         abbe_spectral_unread *out) {
   static bool (*const is[ABBE_SPECTRAL_UNREAD_COUNT])(const char *name) = {
-      is_polarised, is_reradiation, is_named_otherwise};
+      is_polarised, is_reradiation, is_named_otherwise, is_no_wavelength};
   *out = (abbe_spectral_unread){0};
   abbe_spectral_channels read = {0};
   (void)abbe_spectral_channels_find(image, layer, "", &read, NULL);

@@ -81,12 +81,13 @@ abbe_result abbe_spectral_channels_find(const abbe_image *image, const char *lay
                                         const char *name, abbe_spectral_channels *out,
                                         abbe_error *error);
 /* Channels that are of a spectrum and are not read: S1 to S3 of polarised light, re-radiation
- * between wavelengths that are no bands of a reflectance, and what bands are called elsewhere
- * ("w420nm"). */
+ * between wavelengths that are no bands of a reflectance, what bands are called elsewhere
+ * ("w420nm"), and bands of a wavelength that is none ("S0.nannm"). */
 typedef enum abbe_spectral_unread_kind {
   ABBE_SPECTRAL_UNREAD_POLARISED,
   ABBE_SPECTRAL_UNREAD_RERADIATION,
   ABBE_SPECTRAL_UNREAD_NAMED,
+  ABBE_SPECTRAL_UNREAD_WAVELENGTH,
   ABBE_SPECTRAL_UNREAD_COUNT
 } abbe_spectral_unread_kind;
 

@@ -363,6 +363,22 @@ TEST(too_many_attributes) {
   assert_null(image.data);
 }
 
+TEST(too_many_channels) {
+  enum { CHANNELS = 20000 };
+  exr_context_t f = begin_pixel(EXR_STORAGE_SCANLINE, "Y");
+  for (int i = 1; i < CHANNELS; i++)
+    assert_int_equal(
+        exr_add_channel(f, 0, printed("c%05d", i), EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LINEAR, 1, 1),
+        0);
+  assert_int_equal(exr_write_header(f), 0);
+  static const float values[CHANNELS];
+  assert_int_equal(exr_write_scanline_chunk(f, 0, 0, values, sizeof values), 0);
+  assert_int_equal(exr_finish(&f), 0);
+  abbe_image image = {0};
+  REFUSED(ABBE_PARSE, "it has 20000 channels; 1 to 1024 can be read",
+          abbe_exr_read(path, &image, &error));
+}
+
 TEST(deep_is_unsupported) {
   exr_context_t f = begin_pixel(EXR_STORAGE_DEEP_SCANLINE, "Z");
   assert_int_equal(exr_set_version(f, 0, 1), 0);

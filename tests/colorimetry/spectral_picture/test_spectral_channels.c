@@ -77,6 +77,16 @@ TEST(layers_and_reflectances) {
   assert_true(c.count == 0 && c.kind == ABBE_SPECTRAL_NONE);
 }
 
+TEST(four_units_in_any_order) {
+  static const char *const names[] = {"S0.0,6um", "S0.500nm", "S0.5,45E14Hz", "S0.4E-7m",
+                                      "S0.700nm"};
+  static const double nm[] = {400, 500, 299792458e9 / 5.45e14, 600, 700};
+  FILLED(abbe_image, image, make(names, 5, &image));
+  MADE(abbe_spectral_channels, c, abbe_spectral_channels_find(&image, NULL, "it", &c, &error));
+  assert_int_equal(c.count, 5);
+  for (int i = 0; i < 5; i++) assert_near(c.lambda_nm[i], nm[i], 1e-9);
+}
+
 TEST(twice_the_same) {
   static const char *const names[] = {"S0.500nm", "S0.0,5um"};
   abbe_spectral_channels c;
@@ -88,14 +98,14 @@ TEST(twice_the_same) {
 
 TEST(what_is_not_read) {
   static const char *const names[] = {
-      "S0.500nm", "S0.600nm",  "S1.500nm", "S3.600nm", "T.400nm.500nm",
-      "T.500nm",  "w420nm",    "w720nm",   "R",        "a.S2.500nm",
-      "S4.500nm", "T.x.500nm", "nm",       "m",        "1"};
+      "S0.500nm", "S0.600nm", "S1.500nm", "S3.600nm",   "T.400nm.500nm", "T.500nm",
+      "w420nm",   "w720nm",   "R",        "a.S2.500nm", "S4.500nm",      "T.x.500nm",
+      "nm",       "m",        "1",        "S0.nannm",   "S0.-500nm",     "S0.0nm"};
   abbe_spectral_unread unread;
-  FILLED(abbe_image, image, make(names, 15, &image));
+  FILLED(abbe_image, image, make(names, 18, &image));
   abbe_spectral_channels_find_unread(&image, NULL, &unread);
-  static const size_t count[ABBE_SPECTRAL_UNREAD_COUNT] = {2, 1, 2};
-  static const char *const first[] = {"S1.500nm", "T.400nm.500nm", "w420nm"};
+  static const size_t count[ABBE_SPECTRAL_UNREAD_COUNT] = {2, 1, 2, 4};
+  static const char *const first[] = {"S1.500nm", "T.400nm.500nm", "w420nm", "T.x.500nm"};
   for (int k = 0; k < ABBE_SPECTRAL_UNREAD_COUNT; k++) {
     assert_int_equal(unread.count[k], count[k]);
     assert_string_equal(unread.first[k], first[k]);
