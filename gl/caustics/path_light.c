@@ -235,7 +235,7 @@ ALL_INLINE void light_of(const abbe_path_splats *p, const path_spans *s, const p
     const bool here = r->stride > 0 ? r->here[k] : i < r->count;
     l->entry[0][k] += here ? flux_y * left_said - kept : 0;
     l->entry[1][k] += here ? flux_y * (left_said - left) : 0;
-    l->entry[2][k] += here & !lands ? flux_y * left : 0;
+    l->entry[2][k] += (here & !lands) ? flux_y * left : 0;
   }
 }
 

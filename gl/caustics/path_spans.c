@@ -128,7 +128,7 @@ SIDE_BY_SIDE __attribute__((flatten)) void abbe_path_nodes_read(const abbe_path_
 static inline int32_t parts_of(float moved, float size, int32_t least_parts, int32_t most_parts) {
   int32_t parts = 1;
   for (int i = 0; i < 7; i++) /* log2 of MOST_STEPS in spectral_tables.c */
-    parts += ((float)parts * SEGMENT * size < moved) & (parts < most_parts) ? parts : 0;
+    parts += (((float)parts * SEGMENT * size < moved) & (parts < most_parts)) ? parts : 0;
   parts = parts > least_parts ? parts : least_parts;
   return parts < most_parts ? parts : most_parts;
 }
@@ -151,7 +151,7 @@ static void follow_spans(const abbe_path_splats *p, const path_nodes *a, const p
     const bool follows = one & ((moved < far) | !doubts | likewise);
     const int32_t taken = s->taken[k];
     s->bridges[k] = follows ? taken : 0;
-    s->follows[k] = follows | (t->followed[k] != 0) ? taken : 0;
+    s->follows[k] = (follows | (t->followed[k] != 0)) ? taken : 0;
     s->followed[k] = t->followed[k];
     s->moved[k] = follows ? moved : t->moved[k];
     s->owes[k] = t->owes[k];
@@ -159,7 +159,7 @@ static void follow_spans(const abbe_path_splats *p, const path_nodes *a, const p
     t->step[1][k] = one ? step.y : 0;
     t->moved[k] = moved;
     t->followed[k] = follows;
-    t->owes[k] = !follows & (b->path[k] != 0) ? taken : 0;
+    t->owes[k] = (!follows & (b->path[k] != 0)) ? taken : 0;
   }
 }
 
@@ -201,7 +201,7 @@ static void draw_lines(const path_nodes *z, const path_nodes *a, const path_node
     EACH_LANE {
       const float back = (z->index[k] - a->index[k]) * s->per_index[k]; /* where z is, below 0 */
       const float bend = (at_z[k] - at_a[k] - back * (at_b[k] - at_a[k])) / (back * (back - 1));
-      const float curve = (s->followed[k] != 0) & (back < -0.05f) ? bend : 0;
+      const float curve = ((s->followed[k] != 0) & (back < -0.05f)) ? bend : 0;
       const float before = t->curve[i][k];
       s->curve[i][k] = s->bridges[k] ? curve : before;
       t->curve[i][k] = s->curve[i][k];
@@ -223,13 +223,13 @@ static void divide_spans(const abbe_path_splats *p, const lanes size, const path
     const v3 along = along_between(s, k, at);
     /* Where the interface reflects all before b, the path ends there, and not halfway. */
     const float transmits = s->transmits[k], turns = dot(along, along) >= 1 ? transmits : 0;
-    const int32_t up_to = follows & (turns > 0) ? steps : half,
+    const int32_t up_to = (follows & (turns > 0)) ? steps : half,
                   most_parts = bridges ? steps : up_to;
     const float moves = s->moved[k], moved = follows ? moves : 0, owed_moved = bridges ? moves : 0;
     const int32_t own = parts_of(moved, size[k], least_parts, most_parts);
     const int32_t owed = parts_of(owed_moved, size[k], t->left_parts[k], half);
     s->steps[k] = most_parts;
-    s->parts[k] = (s->taken[k] != 0) & (a->flux[k] > 0) ? own : 0;
+    s->parts[k] = ((s->taken[k] != 0) & (a->flux[k] > 0)) ? own : 0;
     s->owed[k] = s->owes[k] != 0 ? owed : 0;
     t->left_parts[k] = least_parts;
   }

@@ -95,7 +95,7 @@ static inline v3 cross(v3 a, v3 b) {
 static inline float cos2_refracted(float cos_i, float eta) {
   const float along = eta * cos_i, by_along = (1 - eta) * (1 + eta) + along * along;
   const float by_sine = 1 - eta * eta * ((1 - cos_i) * (1 + cos_i));
-  return (eta <= 1) | (along < 1) ? by_along : by_sine;
+  return ((eta <= 1) | (along < 1)) ? by_along : by_sine;
 }
 
 static inline float fresnel(float cos_i, float eta) {
