@@ -46,7 +46,7 @@ TEST(an_aperture_is_noted) {
   const abbe_render_desc thesis = {.profile = ABBE_PROFILE_THESIS};
   FILLED(abbe_plan, plan,
          plan_text(printed("%s%s", head, POINT_LIGHT FLOOR BALL("n-bk7")), NULL, &plan));
-  assert_true(is_noted(&plan, "a mean of 32 pictures from its pupil"));
+  assert_true(is_noted(&plan, "a mean of 16 pictures from its pupil"));
   abbe_plan_free(&plan);
   plan_text(printed("%s%s", head, POINT_LIGHT FLOOR BALL("n-bk7")), &thesis, &plan);
   assert_true(is_noted(&plan, "a mean of 1 pictures"));
