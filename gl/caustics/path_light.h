@@ -49,10 +49,6 @@ static inline v2 place_on_tile(const float *to, v3 at) {
   return (v2){dot(vector_at(to), at) + to[3], dot(vector_at(to + 4), at) + to[7]};
 }
 
-static inline v2 map_position(const abbe_path_splats *p, v3 at, int tile) {
-  return tile >= 0 ? place_on_tile(p->tile[tile], at) : place_on_map(p, at);
-}
-
 typedef struct footprint {
   v2 across, skew;
   float narrow, to_next;
