@@ -283,6 +283,11 @@ abbe_result abbe_coating_dat_read(const char *path, const char *name, double pri
                           "%.300s is an encrypted coating, which only its maker's program reads: "
                           "ask the maker for its layers, as a COATING.DAT has them",
                           path);
+  if (ending != NULL && strcasecmp(ending, ".coated") == 0)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%.300s is a table of reflectances for one side, without layers; a "
+                          "COATING.DAT with the layers themselves can be read",
+                          path);
   ABBE_TRY(abbe_file_read_text(path, MOST_BYTES, &text, &size, error));
   reading r = {.path = path, .error = error};
   abbe_result result = read_coating(&r, text, name, primary_nm, table, out);

@@ -185,6 +185,7 @@ TEST(coatings_that_cannot_be_are_refused) {
       {ABBE_UNSUPPORTED, FROM("I"), "of the kind IDEAL"},
       {ABBE_SCHEMA, FROM("NAUGHT"), "has no layers"},
       {ABBE_UNSUPPORTED, BOX "{file: AR.ZEC, name: AR}", "is an encrypted coating"},
+      {ABBE_UNSUPPORTED, BOX "{file: AR.coated, name: AR}", "a table of reflectances for one side"},
       {ABBE_IO, BOX "{file: none.dat, name: AR}", "none.dat"},
       {ABBE_SCHEMA, BOX "{file: COATING.DAT}", "name"},
   };
