@@ -36,6 +36,12 @@ abbe_result abbe_gem_optimise_ascend(abbe_gem_stone_input *input, const char *me
                                      const abbe_gem_optimum_desc *desc, bool tiers, const char *out,
                                      abbe_error *error);
 
+/* The same of every tier, for the measure and for fire in several mixtures; out, FILE.asc, becomes
+ * FILE-1.asc and so on, and plot, .png or .svg, shows both; or NULL. */
+abbe_result abbe_gem_optimise_front(abbe_gem_stone_input *input, const char *measure,
+                                    const abbe_gem_optimum_desc *desc, const char *out,
+                                    const char *plot, abbe_error *error);
+
 /* Tries ways of a crystal in its cut, by desc's measure and view, and says what came of it: tilts
  * from 0 to 90 degrees, azimuths as abbe_gem_orientation_axes has them. measure: for people. */
 abbe_result abbe_gem_optimise_axis(const abbe_gem_stone_input *input, const char *measure,

@@ -72,8 +72,9 @@ static const struct argp_option options[] = {
     {"pavilion", KEY_PAVILION, "FROM:TO", 0, "likewise; without it, 4 to either side", 0},
     {"grid", KEY_GRID, "CROWNSxPAVILIONS", 0, "angles tried; without it, 21x21", 0},
     {"search", KEY_SEARCH, "NAME", 0,
-     "grid; angles (in the same ranges, by derivatives); or tiers (every tier by itself, all meets "
-     "kept); without it, grid",
+     "grid; angles (in the same ranges, by derivatives); tiers (every tier by itself, all meets "
+     "kept); or front (tiers, for the measure and for fire in four mixtures; FILE.asc becomes "
+     "FILE-1.asc and so on); without it, grid",
      0},
     {"output", 'o', "FILE.asc", ABBE_ARGUMENT_WRITES, "the best design", 0},
     {"plot", KEY_PLOT, "FILE", ABBE_ARGUMENT_WRITES, "the measure over both angles; .png or .svg",
@@ -120,8 +121,8 @@ static void read_tilt(request *q, const char *text) {
   exit(ABBE_EXIT_USAGE);
 }
 
-enum { SEARCH_GRID, SEARCH_ANGLES, SEARCH_TIERS, SEARCHES };
-static const char *const searches[SEARCHES] = {"grid", "angles", "tiers"};
+enum { SEARCH_GRID, SEARCH_ANGLES, SEARCH_TIERS, SEARCH_FRONT, SEARCHES };
+static const char *const searches[SEARCHES] = {"grid", "angles", "tiers", "front"};
 
 /* That the parts' options go together, and which pieces of work there are. */
 static void check_parts(const request *q, struct argp_state *state) {
@@ -129,8 +130,8 @@ static void check_parts(const request *q, struct argp_state *state) {
       (q->merge || q->part.parts > 0 || q->pairs != NULL || q->out != NULL || q->plot != NULL))
     argp_error(state, "--axis with so many ways keeps the angles: --part, --merge, --pairs, "
                       "--plot and -o are for angles");
-  if (q->search != SEARCH_GRID &&
-      (q->tilts > 0 || q->merge || q->part.parts > 0 || q->pairs != NULL || q->plot != NULL))
+  if (q->search != SEARCH_GRID && (q->tilts > 0 || q->merge || q->part.parts > 0 ||
+                                   q->pairs != NULL || (q->plot && q->search != SEARCH_FRONT)))
     argp_error(state,
                "--search %s has no grid: --axis with so many ways, --part, --merge, --pairs "
                "and --plot are for one",
@@ -373,6 +374,7 @@ static abbe_result run(request *q, abbe_error *error) {
   abbe_result result = check_plot(q->plot, error);
   if (result == ABBE_OK)
     result = abbe_command_check_targets((const char *[]){q->out, q->plot, q->pairs}, 3, error);
+  if (q->search == SEARCH_FRONT) q->stone.count = 16; /* fire is a colour */
   if (result == ABBE_OK) result = abbe_gem_stone_input_load(&q->stone, error);
   if (result == ABBE_OK && q->tilts > 0) {
     const abbe_gem_optimum_desc desc = describe(q, NULL);
@@ -384,8 +386,11 @@ static abbe_result run(request *q, abbe_error *error) {
   if (result == ABBE_OK) result = find_angles(q, error);
   if (result == ABBE_OK && q->search != SEARCH_GRID) {
     const abbe_gem_optimum_desc desc = describe(q, NULL);
-    result = abbe_gem_optimise_ascend(&q->stone, measures[q->measure].text, &desc,
-                                      q->search == SEARCH_TIERS, q->out, error);
+    const char *text = measures[q->measure].text;
+    result = q->search == SEARCH_FRONT
+                 ? abbe_gem_optimise_front(&q->stone, text, &desc, q->out, q->plot, error)
+                 : abbe_gem_optimise_ascend(&q->stone, text, &desc, q->search == SEARCH_TIERS,
+                                            q->out, error);
     abbe_gem_stone_input_free(&q->stone);
     return result;
   }

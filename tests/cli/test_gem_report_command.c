@@ -165,6 +165,19 @@ TEST(every_tier_by_itself_is_better) {
   run_clears("rm b.asc");
 }
 
+/* The first is the best by the measure alone. */
+TEST(designs_between_light_and_fire) {
+  HELD(cJSON, json) = run_json(GEM "optimise" DIAMOND "--material spinel --search front --size 8 "
+                                   "-o f.asc --plot f.svg --json",
+                               0);
+  const cJSON *list = json_item(json, "designs");
+  assert_int_equal(cJSON_GetArraySize(list), 5);
+  const double design = json_number(cJSON_GetArrayItem(list, 0), "value");
+  assert_true(json_number(cJSON_GetArrayItem(list, 1), "value") > design + 0.01);
+  assert_true(json_number(cJSON_GetArrayItem(list, 4), "fire_error") > 0);
+  run_clears("rm f-1.asc f-2.asc f-3.asc f-4.asc f.svg");
+}
+
 TEST(a_design_brings_its_index) {
   HELD(cJSON, json) = run_json(GEM "report" DIAMOND "--size 24 --wavelengths 5 --tilt 0 --json", 0);
   assert_string_equal(json_item(json, "material")->valuestring, "index 2.417");

@@ -61,7 +61,7 @@ static abbe_result follow(work *w, const place *p, abbe_gem_stone *stone, abbe_g
                           abbe_error *error) {
   const abbe_gem_optimum_desc *s = &w->q->search;
   const abbe_gem_slope_desc desc = {.measure = s->measure,
-                                    .fire = w->q->fire,
+                                    .fire = s->least ? -w->q->fire : w->q->fire,
                                     .spread = w->q->spread,
                                     .axis_rad = s->view.axis_rad,
                                     .tilt_rad = s->view.tilt_rad,
@@ -441,10 +441,10 @@ static abbe_result search_tiers(work *w, const place *design, abbe_gem_ascent *o
                                 abbe_error *error) {
   place pair = {0};
   abbe_result result = ABBE_OK;
-  const bool bound = abbe_cut_stretch_bound(&design->cut, &design->polyhedron);
-  if (!bound) result = search_pair(w, design, out, &pair, error);
-  if (!bound && result == ABBE_OK) result = search_from(w, &pair, true, out, best, error);
-  if (result == ABBE_OK) result = search_from(w, design, bound, out, best, error);
+  const bool near = w->q->near || abbe_cut_stretch_bound(&design->cut, &design->polyhedron);
+  if (!near) result = search_pair(w, design, out, &pair, error);
+  if (!near && result == ABBE_OK) result = search_from(w, &pair, true, out, best, error);
+  if (result == ABBE_OK) result = search_from(w, design, near, out, best, error);
   place_free(&pair);
   return result;
 }

@@ -25,7 +25,8 @@ typedef struct abbe_gem_ascent {
 typedef struct abbe_gem_ascent_desc {
   abbe_gem_optimum_desc search; /* ranges, measure, view; not its grid */
   bool tiers;                   /* every tier; else the two angles */
-  double fire, spread;          /* as abbe_gem_slope_desc has them */
+  bool near;                    /* of tiers: from the design alone */
+  double fire, spread;          /* as abbe_gem_slope_desc has them; more fire is better */
   size_t most;                  /* evaluations of each way uphill of tiers; 0: 100 */
 } abbe_gem_ascent_desc;
 
