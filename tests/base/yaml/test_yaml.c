@@ -169,6 +169,7 @@ TEST(other_types_are_refused_too) {
   assert_int_equal(abbe_yaml_get_count(y, r, "h", 0, SIZE_MAX, &c, &e), ABBE_SCHEMA);
   assert_int_equal(abbe_yaml_get_count(y, r, "z", 0, SIZE_MAX, &c, &e), ABBE_SCHEMA);
   assert_int_equal(abbe_yaml_get_count(y, r, "m", 0, 9, &c, &e), ABBE_SCHEMA);
+  assert_contains(e.text, "'m' wants a whole number, not a mapping");
   assert_int_equal(abbe_yaml_get_bool(y, r, "y", &b, &e), ABBE_SCHEMA);
   assert_contains(e.text, "true nor false");
   assert_int_equal(abbe_yaml_get_bool(y, r, "m", &b, &e), ABBE_SCHEMA);
