@@ -116,8 +116,8 @@ int refractor;  // that this thread's pixel shows
 // SHARES_SPECTRUM: the samples of a pixel share the spectrum, each with wavelengths of its own. Neighbours
 // take places far from each other.
 #ifdef SHARES_SPECTRUM
-uniform ivec2 sample_turn;  // other samples' shares, for another picture of a mean
-#define SAMPLE_AT(at) ((at) + sample_turn)
+uniform ivec2 sample_turn;  // above 0: of a picture of a mean, all of whose samples have that share
+#define SAMPLE_AT(at) (sample_turn.x > 0 ? sample_turn : (at))
 #else
 #define SAMPLE_AT(at) (at)
 #endif
@@ -246,7 +246,11 @@ void aim_at(ivec2 at) {
   vec3 o, beside;
   refractor = int(texelFetch(eye_owner, at, 0).x) - 1;
 #ifdef CRYSTALS
-  path_place = vec2(SAMPLE_AT(at));
+#ifdef SHARES_SPECTRUM
+  path_place = vec2(at + sample_turn);
+#else
+  path_place = vec2(at);
+#endif
   first_wave = first_wave_of(at);
 #endif
   band_set = band_set_of(at);

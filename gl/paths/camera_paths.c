@@ -296,7 +296,8 @@ static void aim_at(walker *w, int x, int y) {
   const float across = mix(v[16], v[17], ((float)x + 0.5f) / w->c->told->eye_samples[0]);
   const float up = mix(v[18], v[19], ((float)y + 0.5f) / w->c->told->eye_samples[1]);
   const v3 side = plus(times(across, vector_at(v + 4)), times(up, vector_at(v + 8)));
-  const int turn = w->c->told->sample_turn, right = (x + turn) & 1, above = (y + turn / 2) & 1;
+  const int turn = w->c->told->sample_turn, right = (turn > 0 ? turn : x) & 1,
+            above = (turn > 0 ? turn / 2 : y) & 1;
   w->sight = v[3] > 0.5f ? normalize(plus(vector_at(v + 12), side)) : vector_at(v + 12);
   w->band_set = w->c->told->shares_spectrum ? 1 + 2 * right + 3 * above - 4 * right * above : 0;
 }
@@ -360,7 +361,7 @@ static void follow_pixel(walker *w, uint32_t pixel, uint32_t *out) {
     in_mirror = w->sight_chain;
     w->sight_chain = 0;
     const int turn = w->c->told->sample_turn;
-    for (int i = step > 1 ? ((x + turn) ^ (y + turn / 2)) & 1 : 0; i < count; i += step) {
+    for (int i = step > 1 ? (turn > 0 ? turn ^ turn / 2 : x ^ y) & 1 : 0; i < count; i += step) {
       w->band_at = base + i;
       sum = plus(sum, path_light(w, false, &mirrored));
       mirror = plus(mirror, times(mirrored, band_weight(w)));
