@@ -4,6 +4,7 @@
 #include "base/text.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 const char *abbe_result_text(abbe_result result) {
@@ -14,6 +15,10 @@ const char *abbe_result_text(abbe_result result) {
   };
   if ((int)result < 0 || result >= ABBE_RESULT_COUNT) return "unknown result";
   return texts[result];
+}
+
+void abbe_drop(void *pointer) {
+  free(*(void **)pointer);
 }
 
 abbe_result abbe_error_set_list(abbe_error *error, abbe_result code, const char *prefix,

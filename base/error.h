@@ -66,6 +66,19 @@ abbe_result abbe_error_set_list(abbe_error *error, abbe_result code, const char 
     if (tried != ABBE_OK) return tried;                                                            \
   } while (0)
 
+/* ABBE_OWNED(type, name) is a local of which type_free is called where its block ends, however it
+ * is left, and so is free() of an ABBE_FREED pointer. It has to be safe to free from its
+ * declaration on. ABBE_HELD(type, name) is a pointer to what type_free frees there, of a type that
+ * ABBE_HOLDS(type) names. */
+#define ABBE_OWNED(type, name) __attribute__((cleanup(type##_free))) type name
+#define ABBE_HOLDS(type)                                                                           \
+  static inline void type##_drop(type **held) {                                                    \
+    type##_free(*held);                                                                            \
+  }
+#define ABBE_HELD(type, name) __attribute__((cleanup(type##_drop))) type *name
+#define ABBE_FREED __attribute__((cleanup(abbe_drop)))
+void abbe_drop(void *pointer);
+
 #ifdef __cplusplus
 }
 #endif

@@ -151,8 +151,8 @@ abbe_result abbe_file_read(const char *path, size_t max_size, char **data, size_
 
 abbe_result abbe_file_read_text(const char *path, size_t max_size, char **data, size_t *size,
                                 abbe_error *error) {
-  abbe_result result = abbe_file_read(path, max_size, data, size, error);
-  if (result != ABBE_OK || !abbe_encoding_is_binary(*data, *size)) return result;
+  ABBE_TRY(abbe_file_read(path, max_size, data, size, error));
+  if (!abbe_encoding_is_binary(*data, *size)) return ABBE_OK;
   free(*data);
   *data = NULL;
   *size = 0;

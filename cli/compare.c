@@ -211,9 +211,7 @@ static abbe_result compare_report_print_json(const abbe_file_comparison *r,
   cJSON *list = cJSON_AddArrayToObject(root, "notes");
   for (size_t i = 0; made && i < notes->count; i++)
     made = cJSON_AddItemToArray(list, cJSON_CreateString(notes->note[i]));
-  abbe_result result = abbe_command_print_json(made ? root : NULL, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, made, error);
 }
 
 enum {

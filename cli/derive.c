@@ -234,9 +234,7 @@ static abbe_result print_json(const request *q, const abbe_derivative *d, abbe_e
                             cJSON_CreateDoubleArray(e, 2));
     }
   }
-  const abbe_result result = abbe_command_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, true, error);
 }
 
 static void note(const request *q, const abbe_derivative *d) {
@@ -262,19 +260,15 @@ static abbe_result write_map(const request *q, const abbe_derivative_desc *desc,
              "XYZ"[i % 3]);
     names[i] = name[i];
   }
-  abbe_image image = {0};
-  abbe_result result = abbe_image_make(desc->width, desc->height, 6 * rows, names, &image, error);
-  for (size_t i = 0; i < d->texels && result == ABBE_OK; i++)
+  ABBE_OWNED(abbe_image, image) = {0};
+  ABBE_TRY(abbe_image_make(desc->width, desc->height, 6 * rows, names, &image, error));
+  for (size_t i = 0; i < d->texels; i++)
     for (size_t c = 0; c < 6 * rows; c++)
       image.data[i * 6 * rows + c] = (c % 6 < 3 ? d->map : d->error)[c / 6 * d->texels + i][c % 3];
-  if (result == ABBE_OK)
-    result = abbe_map_layout_write(&desc->layout, desc->base->light->name, &image, error);
-  if (result == ABBE_OK)
-    result = abbe_image_set_attribute(&image, "abbe:derivative",
-                                      "layers of a key: W a texel by one unit of the key", error);
-  if (result == ABBE_OK) result = abbe_exr_write(q->exr, &image, error);
-  abbe_image_free(&image);
-  return result;
+  ABBE_TRY(abbe_map_layout_write(&desc->layout, desc->base->light->name, &image, error));
+  ABBE_TRY(abbe_image_set_attribute(&image, "abbe:derivative",
+                                    "layers of a key: W a texel by one unit of the key", error));
+  return abbe_exr_write(q->exr, &image, error);
 }
 
 static abbe_result derive(request *q, abbe_derivative_desc *desc, abbe_error *error) {

@@ -24,11 +24,10 @@ typedef struct request {
 } request;
 
 static abbe_result list_views(const request *r, abbe_error *error) {
-  char *text = NULL;
-  abbe_result result = abbe_display_list(r->screen.display.config, &text, error);
-  if (result == ABBE_OK) fputs(text, stdout);
-  free(text);
-  return result;
+  ABBE_FREED char *text = NULL;
+  ABBE_TRY(abbe_display_list(r->screen.display.config, &text, error));
+  fputs(text, stdout);
+  return ABBE_OK;
 }
 
 static abbe_result show_spectrum(const request *r, const abbe_image *image, abbe_error *error) {
@@ -38,24 +37,19 @@ static abbe_result show_spectrum(const request *r, const abbe_image *image, abbe
                                   .space = ABBE_RGB_SPACE_XYZ,
                                   .relative = true,
                                   .odd = &odd};
-  abbe_image xyz = {0};
+  ABBE_OWNED(abbe_image, xyz) = {0};
   if (r->source != NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: --source names the space of R, G, B; here the colours are of the "
                           "spectrum, in XYZ",
                           r->in);
   abbe_spectral_options_note_unread(image, r->layer, r->in);
-  abbe_result result = abbe_relight_make(image, r->in, &desc, &xyz, error);
+  ABBE_TRY(abbe_relight_make(image, r->in, &desc, &xyz, error));
   odd.nan = 0; /* the picture's own note says it */
-  if (result == ABBE_OK)
-    abbe_command_note_odd(r->in, &odd, "counted as the brightest finite band, or as 65504");
-  if (result == ABBE_OK)
-    fprintf(stderr, "note: the colour of the spectrum, %s; 1 is white %s\n",
-            abbe_observer_text(desc.view.observer), abbe_image_attribute_text(&xyz, "abbe:unit"));
-  if (result == ABBE_OK)
-    result = abbe_screen_options_write(&r->screen, r->out, &xyz, NULL, r->in, error);
-  abbe_image_free(&xyz);
-  return result;
+  abbe_command_note_odd(r->in, &odd, "counted as the brightest finite band, or as 65504");
+  fprintf(stderr, "note: the colour of the spectrum, %s; 1 is white %s\n",
+          abbe_observer_text(desc.view.observer), abbe_image_attribute_text(&xyz, "abbe:unit"));
+  return abbe_screen_options_write(&r->screen, r->out, &xyz, NULL, r->in, error);
 }
 
 static abbe_result show_numbers(const request *r, const abbe_image *image, abbe_error *error) {
@@ -112,24 +106,22 @@ static abbe_result write_table(const request *r, abbe_error *error) {
   abbe_display_desc desc = r->screen.display;
   if (desc.source_space == NULL) desc.source_space = "ACEScg";
   char view[200];
-  abbe_display *display = NULL;
+  ABBE_HELD(abbe_display, display) = NULL;
   abbe_lut_error off;
-  abbe_result result = abbe_display_make(&desc, &display, error);
-  if (result == ABBE_OK) result = name_view(r, view, sizeof view, error);
+  ABBE_TRY(abbe_display_make(&desc, &display, error));
+  ABBE_TRY(name_view(r, view, sizeof view, error));
   const abbe_lut_desc lut = {.display = display,
                              .input = desc.source_space,
                              .output = view,
                              .nodes = r->nodes,
                              .low = r->low,
                              .high = r->high};
-  if (result == ABBE_OK) result = abbe_lut_write(&lut, r->out, &off, error);
-  if (result == ABBE_OK)
-    fprintf(stderr,
-            "note: %s is from %s to %s; between its nodes it is off by %.2g on average "
-            "and %.2g at most, greys by %.2g at most, of the display's white\n",
-            r->out, lut.input, view, off.mean, off.most, off.most_grey);
-  abbe_display_free(display);
-  return result;
+  ABBE_TRY(abbe_lut_write(&lut, r->out, &off, error));
+  fprintf(stderr,
+          "note: %s is from %s to %s; between its nodes it is off by %.2g on average "
+          "and %.2g at most, greys by %.2g at most, of the display's white\n",
+          r->out, lut.input, view, off.mean, off.most, off.most_grey);
+  return ABBE_OK;
 }
 
 enum { KEY_LIST = 256, KEY_SOURCE, KEY_LAYER, KEY_NODES, KEY_STOPS };

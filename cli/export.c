@@ -148,7 +148,7 @@ static abbe_result report_pov(const request *q, const abbe_scene *scene, abbe_er
   }
   if (q->json && result == ABBE_OK) {
     cJSON_AddNumberToObject(root, "units_per_metre", abbe_pov_file_scale(scene));
-    result = abbe_command_print_json(root, error);
+    return abbe_command_print_json(root, true, error);
   }
   cJSON_Delete(root);
   return result;
@@ -183,9 +183,7 @@ static abbe_result report_json(const request *q, const abbe_scene_export_report 
     cJSON_AddStringToObject(note, "of", r->notes.note[i].name);
     cJSON_AddStringToObject(note, "text", r->notes.note[i].text);
   }
-  const abbe_result result = abbe_command_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, true, error);
 }
 
 static void report_text(const abbe_scene_export_report *r) {
@@ -204,12 +202,11 @@ static abbe_result write_scene(const request *q, const abbe_scene *scene, abbe_e
     const abbe_result result = abbe_pov_file_write(q->output, scene, &q->pov, error);
     return result == ABBE_OK && (q->json || !q->quiet) ? report_pov(q, scene, error) : result;
   }
-  abbe_scene_export_report report = {0};
-  abbe_result result = abbe_scene_export_write(q->output, scene, q->target, &report, error);
-  if (result == ABBE_OK && q->json) result = report_json(q, &report, error);
-  if (result == ABBE_OK && !q->json && !q->quiet) report_text(&report);
-  abbe_scene_export_report_free(&report);
-  return result;
+  ABBE_OWNED(abbe_scene_export_report, report) = {0};
+  ABBE_TRY(abbe_scene_export_write(q->output, scene, q->target, &report, error));
+  if (q->json) ABBE_TRY(report_json(q, &report, error));
+  if (!q->json && !q->quiet) report_text(&report);
+  return ABBE_OK;
 }
 
 int abbe_command_export(int argc, char **argv) {

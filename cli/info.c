@@ -141,9 +141,7 @@ static abbe_result print_json(const request *r, const abbe_image *image, abbe_er
   bool made = add_header(root, r, image);
   cJSON *list = cJSON_AddArrayToObject(root, "channels");
   for (size_t c = 0; made && c < image->channels; c++) made = add_channel(list, image, c);
-  abbe_result result = abbe_command_print_json(made ? root : NULL, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, made, error);
 }
 
 enum { KEY_JSON = 256 };

@@ -179,9 +179,7 @@ static abbe_result print_json(const request *r, const abbe_image *image, const a
   cJSON *channels = cJSON_AddObjectToObject(root, "channels");
   for (size_t i = 0; made && i < p->channels; i++)
     made = cJSON_AddNumberToObject(channels, image->channel[i], p->mean[i]) != NULL;
-  abbe_result result = abbe_command_print_json(made ? root : NULL, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, made, error);
 }
 
 static abbe_result plot(const request *r, const abbe_pixel_probe *p, abbe_error *error) {

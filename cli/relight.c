@@ -16,26 +16,23 @@ typedef struct request {
 } request;
 
 static abbe_result relight(const request *r, const abbe_image *image, abbe_error *error) {
-  abbe_image out = {0};
+  ABBE_OWNED(abbe_image, out) = {0};
   abbe_relight_desc desc = r->desc;
   abbe_image_odd odd = {0};
   desc.view = r->spectral.view;
   desc.odd = &odd;
   abbe_spectral_options_note_unread(image, desc.layer, r->in);
-  abbe_result result = abbe_relight_make(image, r->in, &desc, &out, error);
+  ABBE_TRY(abbe_relight_make(image, r->in, &desc, &out, error));
   if (r->png != NULL) odd.nan = 0; /* its note says it */
-  if (result == ABBE_OK)
-    abbe_command_note_odd(r->in, &odd, "counted as the brightest finite band, or as 65504");
-  if (result == ABBE_OK && r->spectral.illuminant != NULL)
-    result = abbe_image_set_attribute(&out, "abbe:illuminant", r->spectral.illuminant, error);
-  if (result == ABBE_OK && r->exr != NULL) result = abbe_exr_write(r->exr, &out, error);
-  if (result == ABBE_OK && r->png != NULL)
-    result = abbe_screen_options_write(&r->screen, r->png, &out, NULL, r->in, error);
-  if (result == ABBE_OK)
-    fprintf(stderr, "%s; 1 is %s\n", abbe_image_attribute_text(&out, "abbe:observer"),
-            abbe_image_attribute_text(&out, "abbe:unit"));
-  abbe_image_free(&out);
-  return result;
+  abbe_command_note_odd(r->in, &odd, "counted as the brightest finite band, or as 65504");
+  if (r->spectral.illuminant != NULL)
+    ABBE_TRY(abbe_image_set_attribute(&out, "abbe:illuminant", r->spectral.illuminant, error));
+  if (r->exr != NULL) ABBE_TRY(abbe_exr_write(r->exr, &out, error));
+  if (r->png != NULL)
+    ABBE_TRY(abbe_screen_options_write(&r->screen, r->png, &out, NULL, r->in, error));
+  fprintf(stderr, "%s; 1 is %s\n", abbe_image_attribute_text(&out, "abbe:observer"),
+          abbe_image_attribute_text(&out, "abbe:unit"));
+  return ABBE_OK;
 }
 
 enum { KEY_PNG = 256, KEY_SPACE, KEY_LAYER, KEY_BANDS, KEY_RELATIVE };

@@ -80,9 +80,7 @@ static abbe_result print_json(const abbe_known_answers *a, abbe_error *error) {
               cJSON_AddNumberToObject(root, "failed", (double)failed) != NULL;
   cJSON *list = cJSON_AddArrayToObject(root, "answers");
   for (size_t i = 0; made && i < a->count; i++) made = add_row(list, &a->row[i]);
-  abbe_result result = abbe_command_print_json(made ? root : NULL, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, made, error);
 }
 
 static abbe_result validate(request *r, abbe_error *error) {

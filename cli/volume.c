@@ -255,9 +255,7 @@ static abbe_result print_json(const request *q, const abbe_caustic_volume *v,
               cJSON_AddStringToObject(root, "object", v->body.name) != NULL;
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     made = made && cJSON_AddNumberToObject(root, all[i].name, all[i].value) != NULL;
-  const abbe_result result = abbe_command_print_json(made ? root : NULL, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, made, error);
 }
 
 /* Beside the volume, where it has no name of its own. */
@@ -274,18 +272,16 @@ static abbe_result name_checkpoint(request *q, char **path, abbe_error *error) {
 }
 
 static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
-  abbe_caustic_volume volume = {0};
+  ABBE_OWNED(abbe_caustic_volume, volume) = {0};
   abbe_volume_fill_statistics done;
-  char *path;
-  abbe_result result = name_checkpoint(q, &path, error);
-  if (result == ABBE_OK) result = fill(q, scene, &volume, &done, error);
-  if (result == ABBE_OK) result = abbe_volume_file_write(q->out, &volume, error);
-  if (result == ABBE_OK) remove(q->desc.checkpoint);
-  if (result == ABBE_OK && !q->quiet) summarise(q, &volume, &done);
-  if (result == ABBE_OK && q->json) result = print_json(q, &volume, &done, error);
-  abbe_caustic_volume_free(&volume);
-  free(path);
-  return result;
+  ABBE_FREED char *path = NULL;
+  ABBE_TRY(name_checkpoint(q, &path, error));
+  ABBE_TRY(fill(q, scene, &volume, &done, error));
+  ABBE_TRY(abbe_volume_file_write(q->out, &volume, error));
+  remove(q->desc.checkpoint);
+  if (!q->quiet) summarise(q, &volume, &done);
+  if (q->json) ABBE_TRY(print_json(q, &volume, &done, error));
+  return ABBE_OK;
 }
 
 int abbe_command_volume(int argc, char **argv) {

@@ -65,9 +65,7 @@ static abbe_result print_json(const table *t, abbe_error *error) {
          cJSON_AddStringToObject(root, "illuminant", t->illuminant) != NULL;
   if (made && t->observer != NULL)
     made = cJSON_AddStringToObject(root, "observer", t->observer) != NULL;
-  abbe_result result = abbe_command_print_json(made ? root : NULL, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, made, error);
 }
 
 static abbe_result print_table(const request *r, const table *t, abbe_error *error) {
@@ -91,30 +89,23 @@ static abbe_result print_thesis(const request *r, abbe_error *error) {
 }
 
 static abbe_result print_weights(const request *r, abbe_error *error) {
-  abbe_wavelengths samples = {0};
-  abbe_illuminant light = {0};
-  abbe_weights weights = {0};
-  abbe_result result = abbe_wavelengths_make(r->count, r->min_nm, r->max_nm, &samples, error);
-  if (result == ABBE_OK) result = abbe_illuminant_make(r->illuminant, &light, error);
-  if (result == ABBE_OK)
-    result = abbe_weights_make_by(r->observer, &samples, &light, r->space, &weights, error);
-  if (result == ABBE_OK) {
-    bool tabulated = light.kind == ABBE_ILLUMINANT_TABULATED && light.name[0] == '\0';
-    const table t = {.space = abbe_rgb_space_name(r->space),
-                     .illuminant = tabulated ? r->illuminant : abbe_illuminant_name(&light),
-                     .observer = abbe_observer_text(r->observer),
-                     .component = component_names[r->space],
-                     .count = weights.count,
-                     .lambda_nm = samples.lambda_nm,
-                     .edge_nm = samples.edge_nm,
-                     .weight = (const double(*)[3])weights.weight,
-                     .sum = weights.sum};
-    result = print_table(r, &t, error);
-  }
-  abbe_weights_free(&weights);
-  abbe_illuminant_free(&light);
-  abbe_wavelengths_free(&samples);
-  return result;
+  ABBE_OWNED(abbe_wavelengths, samples) = {0};
+  ABBE_OWNED(abbe_illuminant, light) = {0};
+  ABBE_OWNED(abbe_weights, weights) = {0};
+  ABBE_TRY(abbe_wavelengths_make(r->count, r->min_nm, r->max_nm, &samples, error));
+  ABBE_TRY(abbe_illuminant_make(r->illuminant, &light, error));
+  ABBE_TRY(abbe_weights_make_by(r->observer, &samples, &light, r->space, &weights, error));
+  bool tabulated = light.kind == ABBE_ILLUMINANT_TABULATED && light.name[0] == '\0';
+  const table t = {.space = abbe_rgb_space_name(r->space),
+                   .illuminant = tabulated ? r->illuminant : abbe_illuminant_name(&light),
+                   .observer = abbe_observer_text(r->observer),
+                   .component = component_names[r->space],
+                   .count = weights.count,
+                   .lambda_nm = samples.lambda_nm,
+                   .edge_nm = samples.edge_nm,
+                   .weight = (const double(*)[3])weights.weight,
+                   .sum = weights.sum};
+  return print_table(r, &t, error);
 }
 
 enum { KEY_COUNT = 256, KEY_RANGE, KEY_ILLUMINANT, KEY_OBSERVER, KEY_SPACE, KEY_SET, KEY_JSON };

@@ -261,10 +261,9 @@ static abbe_result draw_band(work *w, abbe_image *out, abbe_error *error) {
   desc.aovs = false;
   desc.progress = NULL;
   desc.compiling = NULL;
-  abbe_result result = change(w, &desc, band, &unit, error);
-  if (result == ABBE_OK) result = abbe_renderer_frame(w->renderer, tell, w, NULL, error);
-  if (result == ABBE_OK) result = abbe_renderer_read(w->renderer, false, &picture, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(change(w, &desc, band, &unit, error));
+  ABBE_TRY(abbe_renderer_frame(w->renderer, tell, w, NULL, error));
+  ABBE_TRY(abbe_renderer_read(w->renderer, false, &picture, error));
   for (size_t p = 0; p < out->width * out->height; p++) {
     const float *xyz = picture.data + p * picture.channels;
     out->data[p * out->channels + w->band] =

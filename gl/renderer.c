@@ -115,10 +115,9 @@ enum { STEPS = sizeof frame / sizeof *frame };
 
 abbe_result abbe_renderer_make_stage(abbe_renderer *r, abbe_pass_stage stage,
                                      const abbe_shader_variant *variant, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < STEPS && result == ABBE_OK; i++)
-    if (frame[i].stage == stage) result = frame[i].make(r, variant, error);
-  return result;
+  for (size_t i = 0; i < STEPS; i++)
+    if (frame[i].stage == stage) ABBE_TRY(frame[i].make(r, variant, error));
+  return ABBE_OK;
 }
 
 void abbe_renderer_free_stage(abbe_renderer *r, abbe_pass_stage stage) {
@@ -128,15 +127,14 @@ void abbe_renderer_free_stage(abbe_renderer *r, abbe_pass_stage stage) {
 
 /* Until one fails, or whoever watches stops it. */
 static abbe_result run_stage(abbe_renderer *r, abbe_pass_stage stage, abbe_error *error) {
-  abbe_result result = ABBE_OK;
   bool first = true;
-  for (size_t i = 0; i < STEPS && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < STEPS; i++) {
     if (frame[i].stage != stage || frame[i].run == NULL) continue;
     if (!first && !abbe_gpu_ask(&r->gpu)) break;
-    result = frame[i].run(r, error);
+    ABBE_TRY(frame[i].run(r, error));
     first = false;
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* The frame: the light's passes, then the camera's; those that were run and depend on nothing that

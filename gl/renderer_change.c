@@ -119,11 +119,10 @@ static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, const a
   if ((parts & LIGHT) != 0) abbe_map_history_change(&r->history, frames, r->local.origin);
   abbe_gpu_scene_begin(&r->gpu, r->local.scene, r->local.unit, &r->plan, local_layout(r),
                        &r->scene);
-  abbe_result result = abbe_gpu_scene_make(&r->scene, scene_parts(parts), error);
-  if (result == ABBE_OK && (parts & LIGHT) != 0) result = make_light(r, error);
-  if (result == ABBE_OK && abbe_renderer_has_method(r) && (parts & (LIGHT | EYE)) == EYE)
-    abbe_method_look(r->method);
-  if (result != ABBE_OK || abbe_renderer_has_method(r)) return result;
+  ABBE_TRY(abbe_gpu_scene_make(&r->scene, scene_parts(parts), error));
+  if ((parts & LIGHT) != 0) ABBE_TRY(make_light(r, error));
+  if (abbe_renderer_has_method(r) && (parts & (LIGHT | EYE)) == EYE) abbe_method_look(r->method);
+  if (abbe_renderer_has_method(r)) return ABBE_OK;
   if ((parts & (LIGHT | POWERS)) == POWERS) abbe_photon_lights_upload(&r->views);
   if (r->plan.desc.compiles_beside && r->gpu.compiling == NULL) /* it has been told */
     abbe_renderer_begin_ahead(r, asked);

@@ -133,15 +133,13 @@ static abbe_result draw_baseline(abbe_renderer *r, double *ms, abbe_error *error
   static const GLfloat nothing[4] = {0, 0, 0, 0};
   const size_t *samples = r->camera.receiver_samples;
   const abbe_gl *gl = r->gpu.gl;
-  abbe_result result = abbe_renderer_check(r, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_renderer_check(r, error));
   if (r->method != NULL)
     return abbe_error_set(error, ABBE_UNSUPPORTED, "the %s profile has no baseline of its own",
                           abbe_profile_name(r->plan.desc.profile));
   if (r->baseline == 0) /* the picture may be what lies in the receivers' colour, and stays */
-    result = abbe_gpu_make_texture(&r->gpu, GL_RGBA32F, samples[0], samples[1], 1, false,
-                                   &r->baseline, error);
-  if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_gpu_make_texture(&r->gpu, GL_RGBA32F, samples[0], samples[1], 1, false,
+                                   &r->baseline, error));
   gl->Finish();
   const double start_ms = 1e3 * abbe_clock_seconds();
   abbe_refractor_faces_use(&r->faces, &r->camera.view);
@@ -157,8 +155,8 @@ static abbe_result draw_baseline(abbe_renderer *r, double *ms, abbe_error *error
 }
 
 abbe_result abbe_renderer_baseline(abbe_renderer *r, double *ms, abbe_error *error) {
-  const abbe_result result = abbe_renderer_enter(r->context, error);
-  return result == ABBE_OK ? abbe_renderer_leave(r->context, draw_baseline(r, ms, error)) : result;
+  ABBE_TRY(abbe_renderer_enter(r->context, error));
+  return abbe_renderer_leave(r->context, draw_baseline(r, ms, error));
 }
 
 abbe_result abbe_renderer_read(abbe_renderer *r, bool aovs, abbe_image *out, abbe_error *error) {

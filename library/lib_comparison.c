@@ -32,12 +32,12 @@ static abbe_result read_request(const char *const *settings, size_t count, bool 
                                     ABBE_LIB_FLAG("best_scale", &q->best_scale),
                                     ABBE_LIB_FLAG("structure", &q->structure),
                                     ABBE_LIB_COUNT("seed", &q->seed, 0, 9e15)};
-  abbe_result result = abbe_library_settings_read("compare", known, sizeof known / sizeof *known,
-                                                  settings, count, error);
-  if (result == ABBE_OK && drawn && q->caustic == 0)
+  ABBE_TRY(abbe_library_settings_read("compare", known, sizeof known / sizeof *known, settings,
+                                      count, error));
+  if (drawn && q->caustic == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "compare: a drawn mask and mask=caustic; only one can be taken");
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result find_mask(const request *q, const abbe_lib_picture *drawn,
@@ -57,13 +57,10 @@ static abbe_result find_mask(const request *q, const abbe_lib_picture *drawn,
 static abbe_result compare(const request *q, const abbe_lib_picture *const picture[2],
                            const abbe_lib_picture *drawn, abbe_lib_comparison *c,
                            abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (int side = 0; side < 2 && result == ABBE_OK; side++)
-    result = abbe_field_make(&picture[side]->image, sides[side], &c->field[side], error);
-  if (result == ABBE_OK)
-    result = abbe_field_align(&c->field[0], sides[0], &c->field[1], sides[1], error);
-  if (result == ABBE_OK) result = find_mask(q, drawn, c, error);
-  if (result != ABBE_OK) return result;
+  for (int side = 0; side < 2; side++)
+    ABBE_TRY(abbe_field_make(&picture[side]->image, sides[side], &c->field[side], error));
+  ABBE_TRY(abbe_field_align(&c->field[0], sides[0], &c->field[1], sides[1], error));
+  ABBE_TRY(find_mask(q, drawn, c, error));
   const abbe_compare_options options = {.mask = c->mask.count > 0 ? &c->mask : NULL,
                                         .best_scale = q->best_scale,
                                         .structure = q->structure,

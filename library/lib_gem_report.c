@@ -81,9 +81,8 @@ static void free_work(work *w) {
 static abbe_result recut(const request *q, work *w, abbe_error *error) {
   const double degrees = 180 / ABBE_PI;
   if (!(q->crown_rad > 0) && !(q->pavilion_rad > 0)) return ABBE_OK;
-  const abbe_result result = abbe_cut_stretch_to(&w->cut, &w->polyhedron, degrees * q->crown_rad,
-                                                 degrees * q->pavilion_rad, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_cut_stretch_to(&w->cut, &w->polyhedron, degrees * q->crown_rad,
+                               degrees * q->pavilion_rad, error));
   abbe_cut_polyhedron_free(&w->polyhedron);
   return abbe_cut_polyhedron_make(&w->cut, q->weld, &w->polyhedron, error);
 }
@@ -93,23 +92,18 @@ static abbe_result prepare(const request *q, const char *path, const char *mater
   const abbe_illuminant d65 = {0};
   char place[2 * PATH_MAX];
   const char *found = abbe_library_shipped_find(path, place, sizeof place);
-  abbe_result result =
-      abbe_cut_file_read_stone(found, q->weld, &w->cut, &w->polyhedron, NULL, error);
-  if (result == ABBE_OK) result = recut(q, w, error);
-  if (result == ABBE_OK) result = abbe_material_table_load(q->table, &w->table, error);
-  if (result == ABBE_OK)
-    result = abbe_material_table_find(&w->table, material, &w->material, error);
-  if (result == ABBE_OK)
-    result = abbe_wavelengths_make(q->wavelengths, q->min_nm, q->max_nm, &w->wavelengths, error);
-  if (result == ABBE_OK)
-    result = abbe_weights_make(&w->wavelengths, &d65, ABBE_RGB_SPACE_XYZ, &w->weights, error);
-  if (result == ABBE_OK)
-    result = abbe_gem_stone_make(&w->cut, &w->polyhedron, w->material, &w->wavelengths, q->width_m,
-                                 &w->stone, error);
+  ABBE_TRY(abbe_cut_file_read_stone(found, q->weld, &w->cut, &w->polyhedron, NULL, error));
+  ABBE_TRY(recut(q, w, error));
+  ABBE_TRY(abbe_material_table_load(q->table, &w->table, error));
+  ABBE_TRY(abbe_material_table_find(&w->table, material, &w->material, error));
+  ABBE_TRY(abbe_wavelengths_make(q->wavelengths, q->min_nm, q->max_nm, &w->wavelengths, error));
+  ABBE_TRY(abbe_weights_make(&w->wavelengths, &d65, ABBE_RGB_SPACE_XYZ, &w->weights, error));
+  ABBE_TRY(abbe_gem_stone_make(&w->cut, &w->polyhedron, w->material, &w->wavelengths, q->width_m,
+                               &w->stone, error));
   abbe_gem_axes axes;
-  if (result == ABBE_OK && q->axis != NULL) result = abbe_gem_axes_read(q->axis, &axes, error);
-  if (result == ABBE_OK && q->axis != NULL) result = abbe_gem_stone_turn(&w->stone, &axes, error);
-  return result;
+  if (q->axis != NULL) ABBE_TRY(abbe_gem_axes_read(q->axis, &axes, error));
+  if (q->axis != NULL) ABBE_TRY(abbe_gem_stone_turn(&w->stone, &axes, error));
+  return ABBE_OK;
 }
 
 static abbe_gem_judgement_desc describe(const request *q, bool (*progress)(void *, double),
@@ -136,12 +130,11 @@ abbe_result abbe_lib_gem_report_make(const char *path, const char *material,
   request q;
   work w = {0};
   *out = NULL;
-  abbe_result result = read_request(settings, count, &q, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_request(settings, count, &q, error));
   abbe_lib_gem_report *r = calloc(1, sizeof *r);
   if (r == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory for a report");
   const abbe_gem_judgement_desc desc = describe(&q, progress, user);
-  result = prepare(&q, path, material, &w, error);
+  abbe_result result = prepare(&q, path, material, &w, error);
   if (result == ABBE_OK)
     result = abbe_gem_judgement_make(&w.stone, &w.weights, &desc, &r->judgement, error);
   free_work(&w);
@@ -184,6 +177,6 @@ abbe_result abbe_lib_gem_report_maps(const abbe_lib_gem_report *r, abbe_lib_pict
   ABBE_REQUIRE(r && out, error);
   abbe_image image = {0};
   *out = NULL;
-  abbe_result result = abbe_gem_map_image(&r->judgement.view, &image, error);
-  return result == ABBE_OK ? abbe_library_picture_adopt(&image, out, error) : result;
+  ABBE_TRY(abbe_gem_map_image(&r->judgement.view, &image, error));
+  return abbe_library_picture_adopt(&image, out, error);
 }

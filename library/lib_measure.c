@@ -115,14 +115,11 @@ abbe_result abbe_lib_scene_lay_map(abbe_lib_scene *s, const abbe_lib_picture *li
   ABBE_REQUIRE(s, error);
   abbe_map_layout layout = {0};
   size_t light = 0;
-  abbe_result result = ABBE_OK;
   if (like != NULL) {
     const char *name = abbe_image_attribute_text(&like->image, "abbe:map_light");
-    result = abbe_map_layout_read(&like->image, "the map", &layout, error);
-    if (result == ABBE_OK && name != NULL)
-      result = abbe_scene_find_light(s->now, name, &light, error);
+    ABBE_TRY(abbe_map_layout_read(&like->image, "the map", &layout, error));
+    if (name != NULL) ABBE_TRY(abbe_scene_find_light(s->now, name, &light, error));
   }
-  if (result != ABBE_OK) return result;
   /* the renderer is not to look at a layout that is gone */
   abbe_library_scene_drop_renderer(s);
   s->laid = like != NULL;

@@ -19,21 +19,15 @@ abbe_result abbe_lib_weights_fill(const char *illuminant, const char *space, dou
                                   double max_nm, size_t count, double *lambda_nm, double *weight,
                                   abbe_error *error) {
   ABBE_REQUIRE(lambda_nm && weight, error);
-  abbe_wavelengths samples = {0};
-  abbe_illuminant light = {0};
-  abbe_weights weights = {0};
+  ABBE_OWNED(abbe_wavelengths, samples) = {0};
+  ABBE_OWNED(abbe_illuminant, light) = {0};
+  ABBE_OWNED(abbe_weights, weights) = {0};
   abbe_rgb_space own;
-  abbe_result result = find_space(space == NULL ? "xyz" : space, &own, error);
-  if (result == ABBE_OK) result = abbe_wavelengths_make(count, min_nm, max_nm, &samples, error);
-  if (result == ABBE_OK)
-    result = abbe_illuminant_make(illuminant == NULL ? "D65" : illuminant, &light, error);
-  if (result == ABBE_OK) result = abbe_weights_make(&samples, &light, own, &weights, error);
-  if (result == ABBE_OK) {
-    memcpy(lambda_nm, samples.lambda_nm, count * sizeof *lambda_nm);
-    memcpy(weight, weights.weight, 3 * count * sizeof *weight);
-  }
-  abbe_weights_free(&weights);
-  abbe_illuminant_free(&light);
-  abbe_wavelengths_free(&samples);
-  return result;
+  ABBE_TRY(find_space(space == NULL ? "xyz" : space, &own, error));
+  ABBE_TRY(abbe_wavelengths_make(count, min_nm, max_nm, &samples, error));
+  ABBE_TRY(abbe_illuminant_make(illuminant == NULL ? "D65" : illuminant, &light, error));
+  ABBE_TRY(abbe_weights_make(&samples, &light, own, &weights, error));
+  memcpy(lambda_nm, samples.lambda_nm, count * sizeof *lambda_nm);
+  memcpy(weight, weights.weight, 3 * count * sizeof *weight);
+  return ABBE_OK;
 }

@@ -33,14 +33,13 @@ static abbe_result turn(abbe_scene *scene, bool mirrors, const double middle[3],
                         const double axis[3], double rad, abbe_error *error) {
   double matrix[16];
   turn_about(middle, rad, axis, matrix);
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object_kind kind = abbe_object_kind_of(&scene->object[i]);
     if (kind == ABBE_OBJECT_REFRACTOR || scene->object[i].holds ||
         (mirrors && kind == ABBE_OBJECT_MIRROR))
-      result = abbe_object_move(&scene->object[i], matrix, error);
+      ABBE_TRY(abbe_object_move(&scene->object[i], matrix, error));
   }
-  return result == ABBE_OK ? abbe_scene_check(scene, error) : result;
+  return abbe_scene_check(scene, error);
 }
 
 abbe_result abbe_refractors_tilt(abbe_scene *scene, double tilt_rad, double axis_rad,

@@ -94,20 +94,11 @@ void check_ok(abbe_result result, const abbe_error *error, const char *call, con
 void check_refusal(abbe_result code, const char *words, abbe_result result, const abbe_error *error,
                    const char *call, const char *file, int line);
 
-/* OWNED(type, name) is a local of which type_free is called where its block ends, and so is free()
- * of a FREED pointer; HELD(type, name) is a pointer to what type_free frees there, of a type that
- * HOLDS(type) names. Not after a failure. */
-#define OWNED(type, name) __attribute__((cleanup(type##_free))) type name
-#define HOLDS(type)                                                                                \
-  static inline void type##_drop(type **held) {                                                    \
-    type##_free(*held);                                                                            \
-  }                                                                                                \
-  struct check_test
-#define HELD(type, name) __attribute__((cleanup(type##_drop))) type *name
-#define FREED __attribute__((cleanup(check_free)))
-static inline void check_free(void *pointer) {
-  free(*(void **)pointer);
-}
+/* Not after a failure. */
+#define OWNED ABBE_OWNED
+#define HOLDS(type) ABBE_HOLDS(type) struct check_test
+#define HELD ABBE_HELD
+#define FREED ABBE_FREED
 
 /* An OWNED local that the call makes: MADE's call may fail, as OK's; FILLED's returns nothing. */
 #define MADE(type, name, ...)                                                                      \

@@ -109,14 +109,12 @@ static abbe_result append_block(abbe_yaml_edit *e, abbe_yaml_node mapping, size_
   char lead[256];
   const char *end = abbe_yaml_edit_line_end(e);
   snprintf(lead, sizeof lead, "%s%s%*s- ", blank ? end : "", end, (int)(indent % 200), "");
-  char *text =
+  ABBE_FREED char *text =
       moved(item->text, own.from,
             abbe_yaml_edit_block_end(item, own.to, abbe_yaml_edit_column_of(item, own.from)),
             abbe_yaml_edit_column_of(item, own.from), indent + 2, lead, end);
   if (text == NULL) return abbe_yaml_edit_no_memory(e, error);
-  abbe_result result = abbe_yaml_edit_splice(e, (abbe_yaml_bytes){at, at}, text, error);
-  free(text);
-  return result;
+  return abbe_yaml_edit_splice(e, (abbe_yaml_bytes){at, at}, text, error);
 }
 
 abbe_result abbe_yaml_edit_append(abbe_yaml_edit *e, abbe_yaml_node mapping, size_t index,
@@ -212,13 +210,11 @@ static abbe_result replace_block(abbe_yaml_edit *e, abbe_yaml_bytes key, abbe_ya
   while (keep > 0 && (e->text[colon + keep - 1] == '\n' || e->text[colon + keep - 1] == '\r'))
     keep--; /* the line end before the block goes with the block */
   char *kept = strndup(e->text + colon, keep);
-  char *text = kept == NULL ? NULL : joined(" ", value, kept, "");
+  ABBE_FREED char *text = kept == NULL ? NULL : joined(" ", value, kept, "");
   free(kept);
   if (text == NULL) return abbe_yaml_edit_no_memory(e, error);
   abbe_yaml_bytes where = {colon, abbe_yaml_edit_line_to(e, old.to)};
-  abbe_result result = abbe_yaml_edit_splice_value(e, where, text, 1, value, what, error);
-  free(text);
-  return result;
+  return abbe_yaml_edit_splice_value(e, where, text, 1, value, what, error);
 }
 
 static abbe_result check_line(const char *value, const char *what, abbe_error *error) {

@@ -152,9 +152,9 @@ static abbe_result add_scalar(builder *b, const yaml_event_t *event, size_t line
   scalar->text = malloc(length + 1);
   if (scalar->text == NULL) return abbe_yaml_no_memory(b->yaml, b->error);
   memcpy(scalar->text, value, length + 1);
-  abbe_result result = add_anchor(b, event->data.scalar.anchor, id, line);
-  if (result == ABBE_OK) result = attach(b, id);
-  return result != ABBE_OK ? result : close_node(b, id, line);
+  ABBE_TRY(add_anchor(b, event->data.scalar.anchor, id, line));
+  ABBE_TRY(attach(b, id));
+  return close_node(b, id, line);
 }
 
 static abbe_result open_collection(builder *b, abbe_yaml_kind kind, const yaml_event_t *event,
@@ -173,10 +173,10 @@ static abbe_result open_collection(builder *b, abbe_yaml_kind kind, const yaml_e
   collection->from = abbe_text_cursor_byte(&b->cursor, event->start_mark.index);
   collection->flow = list ? event->data.sequence_start.style == YAML_FLOW_SEQUENCE_STYLE
                           : event->data.mapping_start.style == YAML_FLOW_MAPPING_STYLE;
-  abbe_result result = add_anchor(b, anchor, id, line);
-  if (result == ABBE_OK) result = attach(b, id);
-  if (result == ABBE_OK) b->stack[b->depth++] = id;
-  return result;
+  ABBE_TRY(add_anchor(b, anchor, id, line));
+  ABBE_TRY(attach(b, id));
+  b->stack[b->depth++] = id;
+  return ABBE_OK;
 }
 
 typedef struct key_place {
@@ -193,22 +193,20 @@ static int by_text(const void *a, const void *b) {
 static abbe_result check_duplicates(builder *b, const abbe_yaml_part *mapping) {
   size_t pairs = mapping->count / 2;
   if (pairs < 2) return ABBE_OK;
-  key_place *keys = malloc(pairs * sizeof *keys);
+  ABBE_FREED key_place *keys = malloc(pairs * sizeof *keys);
   if (keys == NULL) return abbe_yaml_no_memory(b->yaml, b->error);
   for (size_t i = 0; i < pairs; i++) {
     const abbe_yaml_part *key = abbe_yaml_at(b->yaml, (abbe_yaml_node){mapping->child[2 * i]});
     keys[i] = (key_place){key->text, key->line};
   }
   qsort(keys, pairs, sizeof *keys, by_text);
-  abbe_result result = ABBE_OK;
-  for (size_t i = 1; i < pairs && result == ABBE_OK; i++)
+  for (size_t i = 1; i < pairs; i++)
     if (strcmp(keys[i - 1].text, keys[i].text) == 0)
-      result =
+      ABBE_TRY(
           abbe_yaml_fail_at(b->yaml, keys[i].line, ABBE_SCHEMA, b->error,
                             "the key '%.60s' stands here a second time; the first is on line %zu",
-                            keys[i].text, keys[i - 1].line);
-  free(keys);
-  return result;
+                            keys[i].text, keys[i - 1].line));
+  return ABBE_OK;
 }
 
 static abbe_result close_collection(builder *b, const yaml_event_t *event, size_t line) {
@@ -322,10 +320,8 @@ abbe_result abbe_yaml_parse(const char *text, size_t size, const char *name, abb
 
 abbe_result abbe_yaml_load(const char *path, abbe_yaml **out, abbe_error *error) {
   *out = NULL;
-  char *text = NULL;
+  ABBE_FREED char *text = NULL;
   size_t size = 0;
-  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &text, &size, error);
-  if (result == ABBE_OK) result = abbe_yaml_parse(text, size, path, out, error);
-  free(text);
-  return result;
+  ABBE_TRY(abbe_file_read_text(path, MAX_BYTES, &text, &size, error));
+  return abbe_yaml_parse(text, size, path, out, error);
 }

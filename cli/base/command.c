@@ -141,8 +141,9 @@ abbe_result abbe_command_read_picture(const char *path, struct abbe_image *out, 
   return ABBE_OK;
 }
 
-/* cJSON copies the bytes of strings as they are, but for those below U+0020. */
-char *abbe_command_json_text(const struct cJSON *json) {
+/* json as text that ends with a newline, always valid UTF-8; NULL for want of memory or where json
+ * is NULL. cJSON copies the bytes of strings as they are, but for those below U+0020. */
+static char *json_text(const struct cJSON *json) {
   char *raw = json == NULL ? NULL : abbe_json_text(json, true);
   const size_t length = raw == NULL ? 0 : strlen(raw), size = 3 * length + 2;
   char *text = raw == NULL ? NULL : malloc(size);
@@ -151,12 +152,17 @@ char *abbe_command_json_text(const struct cJSON *json) {
   return text;
 }
 
-abbe_result abbe_command_print_json(const struct cJSON *json, abbe_error *error) {
-  char *text = abbe_command_json_text(json);
+abbe_result abbe_command_write_json(struct cJSON *json, bool made, bool print, const char *path,
+                                    abbe_error *error) {
+  ABBE_FREED char *text = json_text(made ? json : NULL);
+  cJSON_Delete(json);
   if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory for the JSON");
-  fputs(text, stdout);
-  free(text);
-  return ABBE_OK;
+  if (print) fputs(text, stdout);
+  return path == NULL ? ABBE_OK : abbe_file_write(path, text, strlen(text), error);
+}
+
+abbe_result abbe_command_print_json(struct cJSON *json, bool made, abbe_error *error) {
+  return abbe_command_write_json(json, made, true, NULL, error);
 }
 
 static bool output_told;

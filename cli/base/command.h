@@ -115,11 +115,12 @@ void abbe_command_note_part(const char *name, const char *part);
 /* Reads a scene-linear picture with that note. Errors of abbe_picture_file_read. */
 abbe_result abbe_command_read_picture(const char *path, struct abbe_image *out, abbe_error *error);
 
-/* json as text that ends with a newline, always valid UTF-8 whatever strings it was given
- * (malloc'd, the caller frees); NULL for want of memory or where json is NULL. */
-char *abbe_command_json_text(const struct cJSON *json);
-/* Prints json (NULL: it could not be made for want of memory) and a line's end to stdout. */
-abbe_result abbe_command_print_json(const struct cJSON *json, abbe_error *error);
+/* Prints json and a line's end to stdout and deletes it. Where it is NULL or not all of it was
+ * made, for want of memory, nothing is printed and ABBE_NO_MEMORY comes back. */
+abbe_result abbe_command_print_json(struct cJSON *json, bool made, abbe_error *error);
+/* The same where `print`, and into the file `path` unless that is NULL. */
+abbe_result abbe_command_write_json(struct cJSON *json, bool made, bool print, const char *path,
+                                    abbe_error *error);
 /* At the end of the program: true, and a sentence on stderr, where something did not reach stdout
  * and no command has reported it. */
 bool abbe_command_output_failed(void);

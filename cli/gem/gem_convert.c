@@ -41,9 +41,7 @@ static abbe_result print_json(const request *q, const abbe_report *report, abbe_
   cJSON *notes = cJSON_AddArrayToObject(root, "notes");
   for (size_t i = 0; i < report->count; i++)
     cJSON_AddItemToArray(notes, cJSON_CreateString(report->note[i].text));
-  abbe_result result = abbe_command_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, true, error);
 }
 
 int abbe_gem_convert(int argc, char **argv) {
@@ -142,8 +140,7 @@ int abbe_gem_diagram(int argc, char **argv) {
     cJSON *root = cJSON_CreateObject();
     abbe_gem_input_describe(&q.in, root);
     cJSON_AddStringToObject(root, "diagram", q.output);
-    result = abbe_command_print_json(root, &error);
-    cJSON_Delete(root);
+    result = abbe_command_print_json(root, true, &error);
   }
   abbe_gem_input_free(&q.in);
   return abbe_command_end(argv[0], result, &error);
@@ -288,9 +285,7 @@ static abbe_result gem_info_print_json(const abbe_gem_input *in, abbe_error *err
       cJSON_AddStringToObject(facet, "fate", fates[in->stone.fate[i]]);
     }
   }
-  abbe_result result = abbe_command_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, true, error);
 }
 
 static const struct argp_option gem_info_options[] = {

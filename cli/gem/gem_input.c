@@ -69,18 +69,15 @@ abbe_result abbe_gem_stone_input_load(abbe_gem_stone_input *q, abbe_error *error
   if (!(q->from_nm > 0)) q->from_nm = ABBE_WAVELENGTH_MIN_NM;
   if (!(q->to_nm > 0)) q->to_nm = ABBE_WAVELENGTH_MAX_NM;
   q->width_m = q->in.width_m > 0 ? q->in.width_m : ABBE_GEM_WIDTH_M;
-  abbe_result result = abbe_gem_input_load(&q->in, error);
-  if (result == ABBE_OK && q->in.material == NULL) result = take_index(q, error);
-  if (result == ABBE_OK)
-    result = abbe_wavelengths_make(q->count, q->from_nm, q->to_nm, &q->wavelengths, error);
-  if (result == ABBE_OK)
-    result = abbe_weights_make(&q->wavelengths, &d65, ABBE_RGB_SPACE_XYZ, &q->weights, error);
-  if (result == ABBE_OK)
-    result = abbe_gem_stone_make(&q->in.cut, &q->in.stone, q->in.material, &q->wavelengths,
-                                 q->width_m, &q->stone, error);
-  if (result == ABBE_OK && q->axis != NULL) result = turn(q, error);
-  if (result == ABBE_OK && !q->in.quiet) note_range(q);
-  return result;
+  ABBE_TRY(abbe_gem_input_load(&q->in, error));
+  if (q->in.material == NULL) ABBE_TRY(take_index(q, error));
+  ABBE_TRY(abbe_wavelengths_make(q->count, q->from_nm, q->to_nm, &q->wavelengths, error));
+  ABBE_TRY(abbe_weights_make(&q->wavelengths, &d65, ABBE_RGB_SPACE_XYZ, &q->weights, error));
+  ABBE_TRY(abbe_gem_stone_make(&q->in.cut, &q->in.stone, q->in.material, &q->wavelengths,
+                               q->width_m, &q->stone, error));
+  if (q->axis != NULL) ABBE_TRY(turn(q, error));
+  if (!q->in.quiet) note_range(q);
+  return ABBE_OK;
 }
 
 enum {
@@ -151,14 +148,13 @@ static void print_notes(const abbe_gem_input *in) {
 static abbe_result find_material(abbe_gem_input *in, abbe_error *error) {
   in->n = in->cut.refractive_index;
   if (in->material_name == NULL) return ABBE_OK;
-  abbe_result result = abbe_material_table_load(in->table_path, &in->table, error);
-  if (result == ABBE_OK)
-    result = abbe_material_table_find(&in->table, in->material_name, &in->material, error);
-  if (result == ABBE_OK && abbe_material_is_conductor(in->material))
+  ABBE_TRY(abbe_material_table_load(in->table_path, &in->table, error));
+  ABBE_TRY(abbe_material_table_find(&in->table, in->material_name, &in->material, error));
+  if (abbe_material_is_conductor(in->material))
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "'%s' is a metal; a stone is cut of something that light passes",
                           in->material_name);
-  return result == ABBE_OK ? abbe_material_n(in->material, ABBE_LINE_D_NM, &in->n, error) : result;
+  return abbe_material_n(in->material, ABBE_LINE_D_NM, &in->n, error);
 }
 
 abbe_result abbe_gem_input_load(abbe_gem_input *in, abbe_error *error) {

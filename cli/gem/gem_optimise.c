@@ -257,9 +257,7 @@ static abbe_result print_json(const request *q, const abbe_gem_stone_input *in,
   cJSON *list = cJSON_AddArrayToObject(root, "grid");
   for (size_t i = 0; i < o->crowns * o->pavilions; i++)
     add_pair(list, NULL, o->crown_rad[i % o->crowns], o->pavilion_rad[i / o->crowns], o->value[i]);
-  abbe_result result = abbe_command_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, true, error);
 }
 
 /* The cut becomes the best one. */
@@ -355,18 +353,17 @@ static abbe_result search(const request *q, abbe_gem_optimum *o, abbe_error *err
 /* All pairs are known. */
 static abbe_result write_all(request *q, const abbe_gem_optimum *o, abbe_error *error) {
   const abbe_gem_stone_input *s = &q->stone;
-  abbe_result result = ABBE_OK;
-  if (q->pairs != NULL) result = abbe_gem_grid_file_write(q->pairs, o, error);
-  if (result == ABBE_OK && q->plot != NULL)
-    result = abbe_gem_optimise_plot(q->plot, &s->in, o, measures[q->measure].text, error);
-  if (result == ABBE_OK && q->out != NULL) result = write_best(q, o, error);
-  if (result == ABBE_OK && !s->in.json && q->part.parts > 0)
+  if (q->pairs != NULL) ABBE_TRY(abbe_gem_grid_file_write(q->pairs, o, error));
+  if (q->plot != NULL)
+    ABBE_TRY(abbe_gem_optimise_plot(q->plot, &s->in, o, measures[q->measure].text, error));
+  if (q->out != NULL) ABBE_TRY(write_best(q, o, error));
+  if (!s->in.json && q->part.parts > 0)
     printf("%zu of %zu pairs are in %s\n",
            o->crowns * o->pavilions - abbe_gem_optimum_missing(o, NULL), o->crowns * o->pavilions,
            q->pairs);
-  if (result == ABBE_OK && !s->in.json && q->part.parts == 0) print(q, s, o);
-  if (result == ABBE_OK && s->in.json) result = print_json(q, s, o, error);
-  return result;
+  if (!s->in.json && q->part.parts == 0) print(q, s, o);
+  if (s->in.json) ABBE_TRY(print_json(q, s, o, error));
+  return ABBE_OK;
 }
 
 static abbe_result run(request *q, abbe_error *error) {

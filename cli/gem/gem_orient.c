@@ -100,9 +100,7 @@ static abbe_result print_json(const ways *w, abbe_error *error) {
   cJSON_AddItemToObject(root, "worst", describe(w, w->worst));
   cJSON *list = cJSON_AddArrayToObject(root, "ways");
   for (size_t i = 0; i < w->tilts * w->azimuths; i++) cJSON_AddItemToArray(list, describe(w, i));
-  const abbe_result result = abbe_command_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, true, error);
 }
 
 abbe_result abbe_gem_optimise_axis(const abbe_gem_stone_input *input, const char *measure,

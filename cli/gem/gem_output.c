@@ -53,7 +53,7 @@ static abbe_chart_axis axis(const char *label, const double *rad, size_t count) 
 abbe_result abbe_gem_optimise_plot(const char *path, const abbe_gem_input *in,
                                    const abbe_gem_optimum *o, const char *measure,
                                    abbe_error *error) {
-  float *value = malloc(o->crowns * o->pavilions * sizeof *value);
+  ABBE_FREED float *value = malloc(o->crowns * o->pavilions * sizeof *value);
   if (value == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a chart");
   for (size_t i = 0; i < o->crowns * o->pavilions; i++)
     value[(o->pavilions - 1 - i / o->crowns) * o->crowns + i % o->crowns] =
@@ -83,7 +83,5 @@ abbe_result abbe_gem_optimise_plot(const char *path, const abbe_gem_input *in,
                             .field = &field,
                             .series_count = 2,
                             .series = series};
-  abbe_result result = abbe_chart_write(path, &chart, 1, 860, 640, error);
-  free(value);
-  return result;
+  return abbe_chart_write(path, &chart, 1, 860, 640, error);
 }

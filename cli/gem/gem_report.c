@@ -108,11 +108,8 @@ static abbe_gem_judgement_desc describe(const request *q, abbe_progress *progres
 }
 
 static abbe_result say(const request *q, const abbe_gem_report_facts *f, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  if (q->out != NULL) result = abbe_gem_report_sheet(q->out, f, error);
-  if (result == ABBE_OK && q->maps != NULL)
-    result = abbe_gem_report_maps(q->maps, f->judgement, error);
-  if (result != ABBE_OK) return result;
+  if (q->out != NULL) ABBE_TRY(abbe_gem_report_sheet(q->out, f, error));
+  if (q->maps != NULL) ABBE_TRY(abbe_gem_report_maps(q->maps, f->judgement, error));
   if (q->stone.in.json) return abbe_gem_report_print_json(f, error);
   if (q->csv)
     abbe_gem_report_print_csv(f);

@@ -390,13 +390,13 @@ static abbe_result put_maps(abbe_sheet *s, const abbe_gem_report_page *page, dou
                {ABBE_GEM_MAP_ISO, false, "brightness, this stone"},
                {ABBE_GEM_MAP_ISO, true, "brightness, beside it"}};
   const double each = (ABBE_SHEET_A4_WIDTH - 2 * MARGIN) / 4;
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < 4 && result == ABBE_OK; i++) {
+  for (int i = 0; i < 4; i++) {
     const abbe_gem_view *view = shown[i].ideal ? &page->ideal : &page->own;
     if (view->side > 0)
-      result = put_map(s, view, shown[i].map, MARGIN + each * i, y, each - 8, shown[i].text, error);
+      ABBE_TRY(
+          put_map(s, view, shown[i].map, MARGIN + each * i, y, each - 8, shown[i].text, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 abbe_result abbe_gem_report_page_put(abbe_sheet *s, const abbe_gem_report_facts *f,

@@ -52,7 +52,7 @@ static abbe_result put_tilts(abbe_sheet *s, const abbe_gem_tilts *t, abbe_gem_ti
                              const char *label, double y, double height, abbe_error *error) {
   enum { LISTS = 4 };
   const size_t all = ABBE_GEM_AXES * t->tilts;
-  double *room = malloc(LISTS * all * sizeof *room);
+  ABBE_FREED double *room = malloc(LISTS * all * sizeof *room);
   if (room == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a chart");
   abbe_chart_series series[ABBE_GEM_AXES] = {{0}};
   char name[ABBE_GEM_AXES][32];
@@ -78,10 +78,8 @@ static abbe_result put_tilts(abbe_sheet *s, const abbe_gem_tilts *t, abbe_gem_ti
                             .y = {.label = label},
                             .series_count = ABBE_GEM_AXES,
                             .series = series};
-  abbe_result result =
-      abbe_sheet_chart(s, MARGIN, y, ABBE_SHEET_A4_WIDTH - 2 * MARGIN, height, 0.62, &chart, error);
-  free(room);
-  return result;
+  return abbe_sheet_chart(s, MARGIN, y, ABBE_SHEET_A4_WIDTH - 2 * MARGIN, height, 0.62, &chart,
+                          error);
 }
 
 static abbe_result put_tilt_page(abbe_sheet *s, const abbe_gem_tilts *t, abbe_error *error) {
@@ -94,15 +92,14 @@ static abbe_result put_tilt_page(abbe_sheet *s, const abbe_gem_tilts *t, abbe_er
                {ABBE_GEM_TILT_FIRE, "fire, % of pixels"}};
   enum { CHARTS = sizeof chart / sizeof chart[0] };
   const double height = (ABBE_SHEET_A4_HEIGHT - 2 * MARGIN - 24) / CHARTS;
-  abbe_result result = ABBE_OK;
   abbe_sheet_turn(s);
   abbe_sheet_text(s, MARGIN, MARGIN + 10, 14, true, false, 0, "Rocked before the eye");
-  for (int i = 0; i < CHARTS && result == ABBE_OK; i++) {
+  for (int i = 0; i < CHARTS; i++) {
     if (chart[i].curve == ABBE_GEM_TILT_FIRE && !t->has_fire) continue;
-    result = put_tilts(s, t, chart[i].curve, chart[i].label, MARGIN + 24 + i * height, height - 8,
-                       error);
+    ABBE_TRY(put_tilts(s, t, chart[i].curve, chart[i].label, MARGIN + 24 + i * height, height - 8,
+                       error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 abbe_result abbe_gem_report_sheet(const char *path, const abbe_gem_report_facts *f,
@@ -137,19 +134,16 @@ abbe_result abbe_gem_report_sheet(const char *path, const abbe_gem_report_facts 
 static abbe_result write_map(const char *folder, const abbe_gem_judgement *j, int map,
                              abbe_error *error) {
   char path[4096];
-  abbe_image image = {0};
+  ABBE_OWNED(abbe_image, image) = {0};
   const bool picture = map < ABBE_GEM_MAP_COUNT;
   const int length = picture ? snprintf(path, sizeof path, "%s/%s.png", folder,
                                         abbe_gem_map_name((abbe_gem_map)map))
                              : snprintf(path, sizeof path, "%s/maps.exr", folder);
   if (length < 0 || (size_t)length >= sizeof path)
     return abbe_error_set(error, ABBE_IO, "%s: the folder's name is too long", folder);
-  abbe_result result = picture ? abbe_gem_map_paint(&j->view, (abbe_gem_map)map, &image, error)
-                               : abbe_gem_map_image(&j->view, &image, error);
-  if (result == ABBE_OK)
-    result = picture ? abbe_png_write(path, &image, 8, error) : abbe_exr_write(path, &image, error);
-  abbe_image_free(&image);
-  return result;
+  ABBE_TRY(picture ? abbe_gem_map_paint(&j->view, (abbe_gem_map)map, &image, error)
+                   : abbe_gem_map_image(&j->view, &image, error));
+  return picture ? abbe_png_write(path, &image, 8, error) : abbe_exr_write(path, &image, error);
 }
 
 abbe_result abbe_gem_report_maps(const char *folder, const abbe_gem_judgement *j,

@@ -166,7 +166,5 @@ abbe_result abbe_gem_report_print_json(const abbe_gem_report_facts *f, abbe_erro
   for (int c = 0; c < 3; c++) add_number(colour, xyz[c], j->xyz[c]);
   add_wavelengths(root, f);
   if (j->has_tilts) add_tilts(root, &j->tilts);
-  abbe_result result = abbe_command_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, true, error);
 }

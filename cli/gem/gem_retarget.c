@@ -165,9 +165,7 @@ static abbe_result print_json(const request *q, const abbe_cut_measures *before,
   cJSON_AddNumberToObject(root, "weight_kept", weight_kept(before, &q->in.measures));
   cJSON_AddNumberToObject(root, "height_kept", height_kept(before, &q->in.measures));
   if (q->output != NULL) cJSON_AddStringToObject(root, "output", q->output);
-  abbe_result result = abbe_command_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, true, error);
 }
 
 /* The cut becomes the new one; its stone too. A meet that was lost is a failure. */

@@ -66,9 +66,9 @@ abbe_dispersion_numbers abbe_materials_numbers(const abbe_material *material);
 const char *abbe_materials_number(char *text, size_t size, const char *format, double value);
 
 /* An object for abbe_materials_print_json; want of memory at any step after this is remembered,
- * and then nothing is printed: half an answer is none. */
+ * and then nothing is printed: half an answer is none. Printing deletes it. */
 cJSON *abbe_materials_json(void);
-abbe_result abbe_materials_print_json(const cJSON *root, abbe_error *error);
+abbe_result abbe_materials_print_json(cJSON *root, abbe_error *error);
 /* The part of a record that is about absorption; where it goes by direction, the colours of faces
  * too. JSON has `attenuation_per_m` (of the ordinary wave) and `pleochroism`. */
 void abbe_materials_show_absorption(const abbe_material *material);
@@ -121,21 +121,8 @@ typedef struct abbe_change {
   abbe_table_edit *edit;
 } abbe_change;
 
-/* Takes one of the two options; false for any other key. */
-bool abbe_change_option(abbe_change *change, int key, const char *arg);
 /* ABBE_UNSUPPORTED, with how to come by a copy, for a table that is compiled in. */
 abbe_result abbe_change_check_table(const char *table, abbe_error *error);
-/* Opens the table; ends the program with ABBE_EXIT_USAGE where --table was not given. */
-abbe_result abbe_change_open(abbe_change *change, abbe_error *error);
-/* Sets NAME's key as one argument "KEY=VALUE" says; a text key's value is taken as it stands, any
- * other's as YAML. */
-abbe_result abbe_change_assign(abbe_table_edit *edit, const char *name, const char *assignment,
-                               abbe_error *error);
-/* Saves, and prints what (a sentence) and the numbers n_d and V_d of record `name` (or NULL) before
- * and after. Says it on stderr where the file is still no table for an older reason. Frees the
- * edit. */
-int abbe_change_end(abbe_change *change, abbe_result result, const char *what, const char *name,
-                    abbe_error *error);
 
 /* The picture of a fit: the curve through its points, its residuals below. */
 

@@ -16,7 +16,8 @@
 #include <strings.h>
 #include <unistd.h>
 
-bool abbe_change_option(abbe_change *change, int key, const char *arg) {
+/* Takes one of the two options; false for any other key. */
+static bool change_option(abbe_change *change, int key, const char *arg) {
   if (key == ABBE_MATERIALS_KEY_TABLE) change->table = arg;
   if (key == ABBE_CHANGE_KEY_DRY_RUN) change->dry_run = true;
   return key == ABBE_MATERIALS_KEY_TABLE || key == ABBE_CHANGE_KEY_DRY_RUN;
@@ -33,7 +34,8 @@ abbe_result abbe_change_check_table(const char *table, abbe_error *error) {
       table, table, table);
 }
 
-abbe_result abbe_change_open(abbe_change *change, abbe_error *error) {
+/* Opens the table; ends the program with ABBE_EXIT_USAGE where --table was not given. */
+static abbe_result change_open(abbe_change *change, abbe_error *error) {
   if (change->table == NULL)
     abbe_materials_wrong_use(change->program, "which table? Name its file with --table FILE");
   ABBE_TRY(abbe_change_check_table(change->table, error));
@@ -56,41 +58,38 @@ static bool ends_with(const char *text, const char *end) {
 /* A matrix of a picture. */
 static abbe_result set_matrix(abbe_table_edit *edit, const char *name, const char *path,
                               abbe_error *error) {
-  abbe_image image = {0};
-  char *text = NULL;
-  abbe_result result = abbe_exr_read(path, &image, error);
-  if (result == ABBE_OK) result = abbe_reradiation_text(&image, path, &text, error);
-  if (result == ABBE_OK) result = abbe_table_edit_set(edit, name, "fluorescence", text, error);
-  abbe_image_free(&image);
-  free(text);
-  return result;
+  ABBE_OWNED(abbe_image, image) = {0};
+  ABBE_FREED char *text = NULL;
+  ABBE_TRY(abbe_exr_read(path, &image, error));
+  ABBE_TRY(abbe_reradiation_text(&image, path, &text, error));
+  return abbe_table_edit_set(edit, name, "fluorescence", text, error);
 }
 
-abbe_result abbe_change_assign(abbe_table_edit *edit, const char *name, const char *assignment,
-                               abbe_error *error) {
+/* Sets NAME's key as one argument "KEY=VALUE" says; a text key's value is taken as it stands, any
+ * other's as YAML. */
+static abbe_result change_assign(abbe_table_edit *edit, const char *name, const char *assignment,
+                                 abbe_error *error) {
   const char *equals = strchr(assignment, '=');
   if (equals == NULL || equals == assignment)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "'%.80s' sets nothing; write KEY=VALUE, such as temperature_c=20",
                           assignment);
-  char *key = strndup(assignment, (size_t)(equals - assignment));
+  ABBE_FREED char *key = strndup(assignment, (size_t)(equals - assignment));
   if (key == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for an argument");
-  abbe_result result;
   if (strcmp(key, "name") == 0)
-    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                            "a name is changed by 'abbe materials set %.80s name=NEW'", name);
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a name is changed by 'abbe materials set %.80s name=NEW'", name);
   else if (equals[1] == '\0')
-    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                            "'%.80s' has no value; to take the key out, say --unset %.80s",
-                            assignment, key);
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "'%.80s' has no value; to take the key out, say --unset %.80s",
+                          assignment, key);
   else if (strcmp(key, "fluorescence") == 0 && ends_with(equals, ".exr"))
-    result = set_matrix(edit, name, equals + 1, error);
+    ABBE_TRY(set_matrix(edit, name, equals + 1, error));
   else if (is_text(key))
-    result = abbe_table_edit_set_text(edit, name, key, equals + 1, error);
+    ABBE_TRY(abbe_table_edit_set_text(edit, name, key, equals + 1, error));
   else
-    result = abbe_table_edit_set(edit, name, key, equals + 1, error);
-  free(key);
-  return result;
+    ABBE_TRY(abbe_table_edit_set(edit, name, key, equals + 1, error));
+  return ABBE_OK;
 }
 
 /* ---- what is printed ---- */
@@ -127,8 +126,11 @@ static void say(const abbe_change *change, const char *what, const char *name,
   printf("  n_d %s -> %s, V_d %s -> %s\n", old_n_d, n_d, old_v_d, v_d);
 }
 
-int abbe_change_end(abbe_change *change, abbe_result result, const char *what, const char *name,
-                    abbe_error *error) {
+/* Saves, and prints what (a sentence) and the numbers n_d and V_d of record `name` (or NULL) before
+ * and after. Says it on stderr where the file is still no table for an older reason. Frees the
+ * edit. */
+static int change_end(abbe_change *change, abbe_result result, const char *what, const char *name,
+                      abbe_error *error) {
   abbe_dispersion_numbers before;
   bool known = false;
   if (result == ABBE_OK) {
@@ -182,7 +184,7 @@ static const abbe_take takes[] = {
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
-  if (abbe_change_option(&r->change, key, arg)) return 0;
+  if (change_option(&r->change, key, arg)) return 0;
   if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case ARGP_KEY_ARG:
@@ -264,19 +266,16 @@ static abbe_result stored_record(const request *r, char **out, abbe_error *error
 static abbe_result tables_record(const request *r, char **out, abbe_error *error) {
   size_t size = 0;
   const char *shipped = abbe_material_table_shipped(r->from, &size);
-  abbe_table_edit *source = NULL;
-  abbe_result result = shipped != NULL
-                           ? abbe_table_edit_parse(shipped, size, r->from, &source, error)
-                           : abbe_table_edit_open(r->from, &source, error);
-  if (result == ABBE_OK) result = abbe_table_edit_record(source, r->name, out, error);
-  abbe_table_edit_free(source);
-  return result;
+  ABBE_HELD(abbe_table_edit, source) = NULL;
+  ABBE_TRY(shipped != NULL ? abbe_table_edit_parse(shipped, size, r->from, &source, error)
+                           : abbe_table_edit_open(r->from, &source, error));
+  return abbe_table_edit_record(source, r->name, out, error);
 }
 
 static abbe_result copy_record(const request *r, char **out, abbe_error *error) {
-  abbe_result result =
-      abbe_material_store_is(r->from) ? stored_record(r, out, error) : tables_record(r, out, error);
-  return result == ABBE_OK && r->as != NULL ? named(r->name, r->as, out, error) : result;
+  ABBE_TRY(abbe_material_store_is(r->from) ? stored_record(r, out, error)
+                                           : tables_record(r, out, error));
+  return r->as != NULL ? named(r->name, r->as, out, error) : ABBE_OK;
 }
 
 static abbe_result read_record(const char *path, char **out, abbe_error *error) {
@@ -306,22 +305,21 @@ static abbe_result check_free(const request *r, const char *name, abbe_error *er
 }
 
 static abbe_result add(const request *r, abbe_error *error) {
-  char *record = NULL;
+  ABBE_FREED char *record = NULL;
   const char *name = r->as != NULL ? r->as : r->name;
   ABBE_TRY(name != NULL ? check_free(r, name, error) : ABBE_OK);
-  abbe_result result = r->record != NULL ? read_record(r->record, &record, error)
-                       : r->from != NULL ? copy_record(r, &record, error)
-                                         : bare_record(r->name, &record, error);
-  if (result == ABBE_OK) result = abbe_table_edit_add(r->change.edit, record, error);
-  free(record);
-  for (size_t i = 0; i < r->assign_count && result == ABBE_OK; i++)
-    result = abbe_change_assign(r->change.edit, name, r->assign[i], error);
-  return result;
+  ABBE_TRY(r->record != NULL ? read_record(r->record, &record, error)
+           : r->from != NULL ? copy_record(r, &record, error)
+                             : bare_record(r->name, &record, error));
+  ABBE_TRY(abbe_table_edit_add(r->change.edit, record, error));
+  for (size_t i = 0; i < r->assign_count; i++)
+    ABBE_TRY(change_assign(r->change.edit, name, r->assign[i], error));
+  return ABBE_OK;
 }
 
 static abbe_result open_table(request *r, abbe_error *error) {
   abbe_error why = {0};
-  abbe_result result = abbe_change_open(&r->change, &why);
+  abbe_result result = change_open(&r->change, &why);
   const bool there = access(r->change.table, F_OK) == 0;
   if (result == ABBE_IO && !there && r->create)
     return abbe_table_edit_make(r->change.table, &r->change.edit, error);
@@ -341,7 +339,7 @@ int abbe_materials_add(int argc, char **argv) {
   char what[160] = "a record is added";
   const char *name = r.as != NULL ? r.as : r.name;
   if (name != NULL) snprintf(what, sizeof what, "the record '%.80s' is added", name);
-  return abbe_change_end(&r.change, result, what, name, &error);
+  return change_end(&r.change, result, what, name, &error);
 }
 
 enum { MAX_NAMES = 256 };
@@ -356,7 +354,7 @@ static const struct argp_option materials_remove_options[] = {ABBE_CHANGE_OPTION
 
 static error_t materials_remove_parse(int key, char *arg, struct argp_state *state) {
   materials_remove_request *r = state->input;
-  if (abbe_change_option(&r->change, key, arg)) return 0;
+  if (change_option(&r->change, key, arg)) return 0;
   if (key != ARGP_KEY_ARG) return ARGP_ERR_UNKNOWN;
   if (r->count == MAX_NAMES) argp_error(state, "more than %d names", MAX_NAMES);
   r->name[r->count++] = arg;
@@ -381,13 +379,13 @@ int abbe_materials_remove(int argc, char **argv) {
   abbe_error error = {0};
   abbe_materials_parse(&materials_remove_parser, argc, argv, &r);
   if (r.count == 0) abbe_materials_wrong_use(argv[0], "remove what? Name a material");
-  abbe_result result = abbe_change_open(&r.change, &error);
+  abbe_result result = change_open(&r.change, &error);
   for (size_t i = 0; i < r.count && result == ABBE_OK; i++)
     result = abbe_table_edit_remove(r.change.edit, r.name[i], &error);
   char what[64];
   snprintf(what, sizeof what, r.count == 1 ? "%zu record is removed" : "%zu records are removed",
            r.count);
-  return abbe_change_end(&r.change, result, what, NULL, &error);
+  return change_end(&r.change, result, what, NULL, &error);
 }
 
 enum { MATERIALS_SET_MAX_CHANGES = 64, KEY_UNSET = ABBE_CHANGE_KEY_OWN };
@@ -406,7 +404,7 @@ static const struct argp_option materials_set_options[] = {
 
 static error_t materials_set_parse(int key, char *arg, struct argp_state *state) {
   materials_set_request *r = state->input;
-  if (abbe_change_option(&r->change, key, arg)) return 0;
+  if (change_option(&r->change, key, arg)) return 0;
   if (key != ARGP_KEY_ARG && key != KEY_UNSET) return ARGP_ERR_UNKNOWN;
   if (key == ARGP_KEY_ARG && r->name == NULL) {
     r->name = arg;
@@ -451,7 +449,7 @@ static abbe_result change_all(const materials_set_request *r, abbe_error *error)
   for (size_t i = 0; i < r->unset_count; i++)
     ABBE_TRY(abbe_table_edit_unset(r->change.edit, r->name, r->unset[i], error));
   for (size_t i = 0; i < r->assign_count; i++)
-    ABBE_TRY(abbe_change_assign(r->change.edit, r->name, r->assign[i], error));
+    ABBE_TRY(change_assign(r->change.edit, r->name, r->assign[i], error));
   if (r->new_name != NULL)
     ABBE_TRY(abbe_table_edit_rename(r->change.edit, r->name, r->new_name, error));
   return ABBE_OK;
@@ -465,12 +463,12 @@ int abbe_materials_set(int argc, char **argv) {
     abbe_materials_wrong_use(argv[0], r.name == NULL
                                           ? "set what? Name a material, and KEY=VALUE"
                                           : "set it to what? Write KEY=VALUE, or --unset KEY");
-  abbe_result result = abbe_change_open(&r.change, &error);
+  abbe_result result = change_open(&r.change, &error);
   if (result == ABBE_OK) result = change_all(&r, &error);
   char what[240];
   if (r.new_name != NULL)
     snprintf(what, sizeof what, "'%.80s' is now '%.80s'", r.name, r.new_name);
   else
     snprintf(what, sizeof what, "the record '%.80s' is changed", r.name);
-  return abbe_change_end(&r.change, result, what, r.new_name != NULL ? NULL : r.name, &error);
+  return change_end(&r.change, result, what, r.new_name != NULL ? NULL : r.name, &error);
 }

@@ -118,9 +118,7 @@ static abbe_result print_json(const abbe_material_table *table, const abbe_findi
   }
   list = cJSON_AddArrayToObject(root, "findings");
   for (size_t i = 0; i < found->count; i++) add_finding(list, table, &found->finding[i]);
-  abbe_result result = abbe_materials_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_materials_print_json(root, error);
 }
 
 /* ---- what is asked ---- */
@@ -145,50 +143,44 @@ static void keep_row(abbe_findings *found, const abbe_material_table *table,
 }
 
 static abbe_result examine(const request *r, const abbe_material_table *known, abbe_error *error) {
-  abbe_material_table table;
-  abbe_report unread = {0};
-  abbe_findings found = {0};
+  ABBE_OWNED(abbe_material_table, table) = {0};
+  ABBE_OWNED(abbe_report, unread) = {0};
+  ABBE_OWNED(abbe_findings, found) = {0};
   const abbe_material *one = NULL;
-  abbe_result result = abbe_material_table_load_lenient(r->table, &table, &unread, error);
-  if (result == ABBE_OK && r->name != NULL)
-    result = abbe_material_table_find(&table, r->name, &one, error);
-  if (result == ABBE_OK) result = abbe_check_table(&table, known, &found, error);
-  if (result == ABBE_OK && one != NULL) {
+  ABBE_TRY(abbe_material_table_load_lenient(r->table, &table, &unread, error));
+  if (r->name != NULL) ABBE_TRY(abbe_material_table_find(&table, r->name, &one, error));
+  ABBE_TRY(abbe_check_table(&table, known, &found, error));
+  if (one != NULL) {
     keep_row(&found, &table, one);
     abbe_report_free(&unread);
   }
-  if (result == ABBE_OK && r->json)
-    result = print_json(&table, &found, &unread, error);
-  else if (result == ABBE_OK)
+  if (r->json)
+    ABBE_TRY(print_json(&table, &found, &unread, error));
+  else
     print_text(r, &table, &found, &unread);
   counts c = count(&found, &unread);
   size_t bad = c.weight[ABBE_FINDING_WRONG] + c.weight[ABBE_FINDING_DOUBTFUL];
-  if (result == ABBE_OK && bad > 0)
-    result = abbe_error_set(error, ABBE_TOLERANCE, "%zu finding%s in '%s' want%s a look", bad,
-                            bad == 1 ? "" : "s", table.path, bad == 1 ? "s" : "");
-  abbe_findings_free(&found);
-  abbe_report_free(&unread);
-  abbe_material_table_free(&table);
-  return result;
+  if (bad > 0)
+    return abbe_error_set(error, ABBE_TOLERANCE, "%zu finding%s in '%s' want%s a look", bad,
+                          bad == 1 ? "" : "s", table.path, bad == 1 ? "s" : "");
+  return ABBE_OK;
 }
 
 static abbe_result fix(const request *r, const abbe_material_table *known, abbe_error *error) {
-  abbe_table_edit *edit = NULL;
+  ABBE_HELD(abbe_table_edit, edit) = NULL;
   abbe_table_fix made = {0};
-  abbe_result result = abbe_change_check_table(r->table, error);
-  if (result == ABBE_OK) result = abbe_table_edit_open(r->table, &edit, error);
-  if (result == ABBE_OK) result = abbe_table_fix_make(edit, known, &made, error);
-  if (result == ABBE_OK && !r->dry_run) result = abbe_table_edit_save(edit, error);
-  if (result == ABBE_OK)
-    fprintf(stderr, "%s: %zu value%s %s\n", r->program, made.fixed, made.fixed == 1 ? "" : "s",
-            r->dry_run ? "would be fixed" : "fixed");
-  if (result == ABBE_OK && made.warned[0] != '\0')
+  ABBE_TRY(abbe_change_check_table(r->table, error));
+  ABBE_TRY(abbe_table_edit_open(r->table, &edit, error));
+  ABBE_TRY(abbe_table_fix_make(edit, known, &made, error));
+  if (!r->dry_run) ABBE_TRY(abbe_table_edit_save(edit, error));
+  fprintf(stderr, "%s: %zu value%s %s\n", r->program, made.fixed, made.fixed == 1 ? "" : "s",
+          r->dry_run ? "would be fixed" : "fixed");
+  if (made.warned[0] != '\0')
     fprintf(stderr, "%s: %s: the row's own warning stays as it was; see whether it still holds\n",
             r->program, made.warned);
-  if (result == ABBE_OK && made.refused > 0)
+  if (made.refused > 0)
     fprintf(stderr, "%s: %zu could not be: %s\n", r->program, made.refused, made.why);
-  abbe_table_edit_free(edit);
-  return result;
+  return ABBE_OK;
 }
 
 /* ---- arguments ---- */

@@ -220,9 +220,7 @@ static abbe_result tell(const request *r, size_t count, const abbe_report *repor
   cJSON_AddStringToObject(root, "format", format_names[r->format]);
   cJSON_AddNumberToObject(root, "materials", (double)(count - report->kinds[ABBE_NOTE_SKIPPED]));
   abbe_materials_add_report(root, report);
-  abbe_result result = abbe_materials_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_materials_print_json(root, error);
 }
 
 int abbe_materials_export(int argc, char **argv) {

@@ -250,9 +250,7 @@ static abbe_result print_json(const request *r, const subject *s, const abbe_fit
     cJSON_AddNumberToObject(item, "max_error_nm", over->max_nm);
   }
   add_arrays(root, s, f);
-  abbe_result result = abbe_materials_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_materials_print_json(root, error);
 }
 
 /* ---- the answer ---- */

@@ -67,9 +67,7 @@ static abbe_result print_json(const request *r, const abbe_material *m, const ab
                           e->compared > 0 ? known->material[e->worst].name : NULL);
   cJSON_AddNumberToObject(root, "rounding_error", e->rounding);
   cJSON_AddStringToObject(root, "source", m->source);
-  abbe_result result = abbe_materials_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_materials_print_json(root, error);
 }
 
 /* What the check doubts is printed beside the record, not in it. */
@@ -97,16 +95,14 @@ static abbe_result answer(const request *r, const abbe_material_table *known, ab
                      .min_nm = r->from_nm,
                      .max_nm = r->to_nm,
                      .temperature_c = NAN};
-  abbe_result result =
-      abbe_convert_judge(&r->given, r->form, known, r->from_nm, r->to_nm, &e, error);
-  if (result == ABBE_OK) result = abbe_convert_make(&r->given, r->form, &m.dispersion, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_convert_judge(&r->given, r->form, known, r->from_nm, r->to_nm, &e, error));
+  ABBE_TRY(abbe_convert_make(&r->given, r->form, &m.dispersion, error));
   abbe_materials_round(&m.dispersion);
   snprintf(name, sizeof name, "%s", r->name);
   describe_source(r, source, sizeof source);
   describe(&e, known, warning, sizeof warning);
-  result = r->json ? print_json(r, &m, &e, known, error) : abbe_material_write(&m, stdout, error);
-  return result == ABBE_OK ? warn(r, &m, known, error) : result;
+  ABBE_TRY(r->json ? print_json(r, &m, &e, known, error) : abbe_material_write(&m, stdout, error));
+  return warn(r, &m, known, error);
 }
 
 /* ---- arguments ---- */

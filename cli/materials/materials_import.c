@@ -156,9 +156,7 @@ static abbe_result tell(const request *r, const abbe_material_table *table,
   cJSON_AddStringToObject(root, "table", r->output);
   cJSON_AddNumberToObject(root, "materials", (double)table->count);
   abbe_materials_add_report(root, report);
-  abbe_result result = abbe_materials_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_materials_print_json(root, error);
 }
 
 int abbe_materials_import(int argc, char **argv) {

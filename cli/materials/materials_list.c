@@ -148,9 +148,7 @@ static abbe_result list_json(const abbe_material_table *table, const size_t *row
     abbe_materials_add_text(item, "source", m->source);
     abbe_materials_add_text(item, "warning", m->warning);
   }
-  abbe_result result = abbe_materials_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_materials_print_json(root, error);
 }
 
 /* ---- arguments ---- */

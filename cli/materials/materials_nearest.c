@@ -60,9 +60,7 @@ static abbe_result print_json(const abbe_material_table *table, const abbe_glass
     cJSON_AddNumberToObject(item, "max", g->max);
     cJSON_AddNumberToObject(item, "max_nm", g->max_nm);
   }
-  abbe_result result = abbe_materials_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_materials_print_json(root, error);
 }
 
 /* A material is not listed as its own nearest. */
@@ -76,52 +74,43 @@ static void leave_out(abbe_glass_distances *d, const abbe_material_table *table,
 
 static abbe_result like(const request *r, const abbe_material_table *table,
                         abbe_glass_distances *out, abbe_error *error) {
-  abbe_material_table other = {0};
+  ABBE_OWNED(abbe_material_table, other) = {0};
   const abbe_material *m = NULL;
   double n;
-  abbe_result result = ABBE_OK;
   if (r->like_table != NULL)
-    result = abbe_material_table_load_named(r->like_table, &r->like, 1, &other, error);
-  if (result == ABBE_OK)
-    result = abbe_material_table_find(r->like_table != NULL ? &other : table, r->like, &m, error);
-  if (result == ABBE_OK) result = abbe_material_n(m, r->from_nm, &n, error);
-  if (result == ABBE_OK) result = abbe_material_n(m, r->to_nm, &n, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_glass_distance_to_curve(table, &m->dispersion, r->from_nm, r->to_nm, 0, out, error);
-  if (result == ABBE_OK) leave_out(out, table, m);
-  abbe_material_table_free(&other);
-  return result;
+    ABBE_TRY(abbe_material_table_load_named(r->like_table, &r->like, 1, &other, error));
+  ABBE_TRY(abbe_material_table_find(r->like_table != NULL ? &other : table, r->like, &m, error));
+  ABBE_TRY(abbe_material_n(m, r->from_nm, &n, error));
+  ABBE_TRY(abbe_material_n(m, r->to_nm, &n, error));
+  ABBE_TRY(
+      abbe_glass_distance_to_curve(table, &m->dispersion, r->from_nm, r->to_nm, 0, out, error));
+  leave_out(out, table, m);
+  return ABBE_OK;
 }
 
 static abbe_result by_points(const request *r, const abbe_material_table *table,
                              abbe_glass_distances *out, abbe_error *error) {
-  abbe_index_points points;
-  abbe_result result = abbe_index_points_load(r->points, &points, error);
-  if (result == ABBE_OK) result = abbe_glass_distance_to_points(table, &points, 0, out, error);
-  abbe_index_points_free(&points);
-  return result;
+  ABBE_OWNED(abbe_index_points, points) = {0};
+  ABBE_TRY(abbe_index_points_load(r->points, &points, error));
+  return abbe_glass_distance_to_points(table, &points, 0, out, error);
 }
 
 static abbe_result answer(const request *r, const abbe_material_table *table, abbe_error *error) {
-  abbe_glass_distances d = {0};
-  abbe_result result;
+  ABBE_OWNED(abbe_glass_distances, d) = {0};
   if (r->like != NULL)
-    result = like(r, table, &d, error);
+    ABBE_TRY(like(r, table, &d, error));
   else if (r->points != NULL)
-    result = by_points(r, table, &d, error);
+    ABBE_TRY(by_points(r, table, &d, error));
   else
-    result = abbe_glass_distance_to_numbers(table, r->n_d, r->v_d, 0, &d, error);
+    ABBE_TRY(abbe_glass_distance_to_numbers(table, r->n_d, r->v_d, 0, &d, error));
   if (d.count > r->count) d.count = r->count;
-  if (result == ABBE_OK && d.count == 0)
-    result =
-        abbe_error_set(error, ABBE_NOT_FOUND, "no material of '%s' has data there", table->path);
-  if (result == ABBE_OK && r->json)
-    result = print_json(table, &d, error);
-  else if (result == ABBE_OK)
+  if (d.count == 0)
+    return abbe_error_set(error, ABBE_NOT_FOUND, "no material of '%s' has data there", table->path);
+  if (r->json)
+    ABBE_TRY(print_json(table, &d, error));
+  else
     print_text(r, table, &d);
-  abbe_glass_distances_free(&d);
-  return result;
+  return ABBE_OK;
 }
 
 /* ---- arguments ---- */

@@ -80,9 +80,7 @@ static abbe_result print_json(const request *r, const abbe_glass_partners *found
     abbe_materials_add_text(item, "status", p->material->catalogue.status);
     cJSON_AddNumberToObject(item, "doubles", (double)p->doubles);
   }
-  const abbe_result result = abbe_materials_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_materials_print_json(root, error);
 }
 
 /* The glass, the third and the partners that are listed, among all of the table. */
@@ -104,25 +102,22 @@ static abbe_result draw(const request *r, const abbe_material_table *table,
 
 static abbe_result answer(const request *r, const abbe_material_table *table, abbe_error *error) {
   const abbe_material *glass = NULL, *third = NULL;
-  abbe_glass_partners found = {0};
-  abbe_result result = abbe_material_table_find(table, r->name, &glass, error);
-  if (result == ABBE_OK && r->third != NULL)
-    result = abbe_material_table_find(table, r->third, &third, error);
-  if (result == ABBE_OK)
-    result = abbe_glass_partners_find(table, glass, third, r->most_power, &found, error);
+  ABBE_OWNED(abbe_glass_partners, found) = {0};
+  ABBE_TRY(abbe_material_table_find(table, r->name, &glass, error));
+  if (r->third != NULL) ABBE_TRY(abbe_material_table_find(table, r->third, &third, error));
+  ABBE_TRY(abbe_glass_partners_find(table, glass, third, r->most_power, &found, error));
   if (found.count > r->count) found.count = r->count;
-  if (result == ABBE_OK && found.count == 0)
-    result = abbe_error_set(error, ABBE_NOT_FOUND,
-                            "no glass of '%.200s' makes an achromat with %s whose powers' sizes "
-                            "have a sum up to %g",
-                            table->path, r->name, r->most_power);
-  if (result == ABBE_OK && r->map != NULL) result = draw(r, table, glass, third, &found, error);
-  if (result == ABBE_OK && r->json)
-    result = print_json(r, &found, error);
-  else if (result == ABBE_OK)
+  if (found.count == 0)
+    return abbe_error_set(error, ABBE_NOT_FOUND,
+                          "no glass of '%.200s' makes an achromat with %s whose powers' sizes "
+                          "have a sum up to %g",
+                          table->path, r->name, r->most_power);
+  if (r->map != NULL) ABBE_TRY(draw(r, table, glass, third, &found, error));
+  if (r->json)
+    ABBE_TRY(print_json(r, &found, error));
+  else
     print_text(r, &found);
-  abbe_glass_partners_free(&found);
-  return result;
+  return ABBE_OK;
 }
 
 /* ---- arguments ---- */

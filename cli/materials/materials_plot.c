@@ -204,17 +204,16 @@ static abbe_result draw_map(const request *r, const abbe_material_table *table, 
                            .width = r->width,
                            .height = r->height};
   size_t left_out = 0;
-  abbe_result result = abbe_material_map_write(r->out, &map, &left_out, error);
-  if (result == ABBE_OK && left_out > 0)
+  ABBE_TRY(abbe_material_map_write(r->out, &map, &left_out, error));
+  if (left_out > 0)
     fprintf(stderr, "%s: left out %zu without n_d and a finite V_d in their range\n", r->program,
             left_out);
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result draw_curves(const request *r, const abbe_material **named, abbe_error *error) {
-  abbe_index_points points = {0};
-  abbe_result result = ABBE_OK;
-  if (r->points != NULL) result = abbe_index_points_load(r->points, &points, error);
+  ABBE_OWNED(abbe_index_points, points) = {0};
+  if (r->points != NULL) ABBE_TRY(abbe_index_points_load(r->points, &points, error));
   abbe_material_chart chart = {.count = r->name_count,
                                .material = named,
                                .min_nm = r->from,
@@ -223,9 +222,7 @@ static abbe_result draw_curves(const request *r, const abbe_material **named, ab
                                .points = r->points != NULL ? &points : NULL,
                                .width = r->width,
                                .height = r->height};
-  if (result == ABBE_OK) result = abbe_material_chart_write(r->out, &chart, error);
-  abbe_index_points_free(&points);
-  return result;
+  return abbe_material_chart_write(r->out, &chart, error);
 }
 
 int abbe_materials_plot(int argc, char **argv) {

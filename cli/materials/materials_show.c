@@ -210,15 +210,13 @@ static abbe_result show_text(const request *r, const abbe_material *m, const abb
 static abbe_result show_fit_yaml(const abbe_material *m, abbe_error *error) {
   const double low = ABBE_WAVELENGTH_MIN_NM, high = ABBE_WAVELENGTH_MAX_NM;
   double n = 0;
-  abbe_result result = abbe_material_n(m, low, &n, error);
-  if (result == ABBE_OK) result = abbe_material_n(m, high, &n, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_material_n(m, low, &n, error));
+  ABBE_TRY(abbe_material_n(m, high, &n, error));
   abbe_dispersion fit[2];
   double max_error[2];
   for (int i = 0; i < 2; i++) {
-    result = abbe_fit_dispersion(&m->dispersion, (size_t)i + 2, low, high, &fit[i], &max_error[i],
-                                 error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_fit_dispersion(&m->dispersion, (size_t)i + 2, low, high, &fit[i], &max_error[i],
+                                 error));
   }
   printf("fit:\n");
   for (int i = 0; i < 2; i++) {
@@ -358,7 +356,7 @@ static abbe_result show_json(const request *r, const abbe_material_table *table,
   add_record(root, m);
   if (!metal) add_published(root, m);
   add_findings(root, found);
-  if (result == ABBE_OK) result = abbe_materials_print_json(root, error);
+  if (result == ABBE_OK) return abbe_materials_print_json(root, error);
   cJSON_Delete(root);
   return result;
 }
@@ -430,29 +428,23 @@ static void check(const request *r) {
 
 static abbe_result answer(const request *r, const abbe_material_table *table, abbe_error *error) {
   const abbe_material *m = NULL;
-  abbe_result result = abbe_material_table_find(table, r->name, &m, error);
+  ABBE_TRY(abbe_material_table_find(table, r->name, &m, error));
   /* asked first, so that a failure prints nothing else */
-  for (size_t i = 0; i < r->at_count && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < r->at_count; i++) {
     double n, k;
-    result = abbe_material_is_conductor(m) ? abbe_material_nk(m, r->at[i], &n, &k, error)
-                                           : abbe_material_n(m, r->at[i], &n, error);
+    ABBE_TRY(abbe_material_is_conductor(m) ? abbe_material_nk(m, r->at[i], &n, &k, error)
+                                           : abbe_material_n(m, r->at[i], &n, error));
   }
-  if (result != ABBE_OK) return result;
   abbe_material here = *m; /* owns nothing of its own */
   if (abbe_conditions_given(&r->conditions))
-    result = abbe_material_place(&here, &r->conditions, error);
-  if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_material_place(&here, &r->conditions, error));
   if (r->fit) return show_fit_yaml(m, error);
-  abbe_material_table known;
-  abbe_findings found = {0};
-  result = abbe_material_table_load(NULL, &known, error);
-  if (result == ABBE_OK) result = abbe_check_material(m, &known, &found, error);
-  if (result == ABBE_OK) m = &here;
-  if (result == ABBE_OK)
-    result = r->json ? show_json(r, table, m, &found, error) : show_text(r, m, &found, error);
-  abbe_findings_free(&found);
-  abbe_material_table_free(&known);
-  return result;
+  ABBE_OWNED(abbe_material_table, known) = {0};
+  ABBE_OWNED(abbe_findings, found) = {0};
+  ABBE_TRY(abbe_material_table_load(NULL, &known, error));
+  ABBE_TRY(abbe_check_material(m, &known, &found, error));
+  m = &here;
+  return r->json ? show_json(r, table, m, &found, error) : show_text(r, m, &found, error);
 }
 
 int abbe_materials_show(int argc, char **argv) {

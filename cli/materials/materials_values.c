@@ -89,8 +89,8 @@ cJSON *abbe_materials_json(void) {
   return cJSON_CreateObject();
 }
 
-abbe_result abbe_materials_print_json(const cJSON *root, abbe_error *error) {
-  return abbe_command_print_json(json_lost ? NULL : root, error);
+abbe_result abbe_materials_print_json(cJSON *root, abbe_error *error) {
+  return abbe_command_print_json(root, !json_lost, error);
 }
 
 void abbe_materials_add_text(cJSON *to, const char *key, const char *text) {

@@ -257,11 +257,9 @@ void abbe_frame_series_free(abbe_frame_series *s) {
 
 abbe_result abbe_frame_series_mark(const abbe_frame_series *s, size_t i, abbe_image *image,
                                    abbe_error *error) {
-  char *text = frame_record_of(s->made, s->first + i);
+  ABBE_FREED char *text = frame_record_of(s->made, s->first + i);
   if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a frame's record");
-  const abbe_result result = abbe_image_set_attribute(image, ABBE_PNG_TEXT, text, error);
-  free(text);
-  return result;
+  return abbe_image_set_attribute(image, ABBE_PNG_TEXT, text, error);
 }
 
 /* Whether the file was made by this request; else that is reported. */

@@ -204,18 +204,15 @@ void abbe_screen_options_end(const abbe_screen_options *o, const char *png,
 abbe_result abbe_screen_options_check(const abbe_screen_options *o, const char *png,
                                       abbe_rgb_space space, abbe_error *error) {
   static const char *const names[] = {"R", "G", "B"};
-  abbe_display *display = NULL;
-  abbe_image probe = {0};
+  ABBE_HELD(abbe_display, display) = NULL;
+  ABBE_OWNED(abbe_image, probe) = {0};
   abbe_display_desc desc = o->display;
   desc.source_space = abbe_rgb_space_ocio_name(space);
-  abbe_result result = abbe_display_make(&desc, &display, error);
-  if (result == ABBE_OK) result = abbe_image_make(1, 1, 3, names, &probe, error);
-  if (result == ABBE_OK) result = abbe_display_apply(display, &probe, error);
+  ABBE_TRY(abbe_display_make(&desc, &display, error));
+  ABBE_TRY(abbe_image_make(1, 1, 3, names, &probe, error));
+  ABBE_TRY(abbe_display_apply(display, &probe, error));
   const abbe_screen_file_needs needs = {.bits = o->bits, .transfer = probe.transfer};
-  if (result == ABBE_OK) result = abbe_screen_file_check(png, &needs, error);
-  abbe_image_free(&probe);
-  abbe_display_free(display);
-  return result;
+  return abbe_screen_file_check(png, &needs, error);
 }
 
 /* No exposure shows what is infinite, and none is proposed that would be refused. */
@@ -309,11 +306,10 @@ static abbe_result read_like(abbe_map_options *o, const abbe_scene *scene, bool 
 
 abbe_result abbe_map_options_resolve(abbe_map_options *o, const abbe_scene *scene, bool sized,
                                      abbe_error *error) {
-  abbe_result result = ABBE_OK;
   o->light_index = 0;
-  if (o->light != NULL) result = abbe_scene_find_light(scene, o->light, &o->light_index, error);
-  if (result == ABBE_OK && o->like != NULL) result = read_like(o, scene, sized, error);
-  return result;
+  if (o->light != NULL) ABBE_TRY(abbe_scene_find_light(scene, o->light, &o->light_index, error));
+  if (o->like != NULL) ABBE_TRY(read_like(o, scene, sized, error));
+  return ABBE_OK;
 }
 
 enum { MOST_THREADS = 256 };

@@ -199,11 +199,10 @@ static abbe_result load(const char *path, const char *materials,
                                       .set = set,
                                       .set_count = changes->set_count + changes->timed,
                                       .studio = &studio};
-  abbe_result result = abbe_scene_load(path, &options, out, error);
-  if (result == ABBE_OK && changes->save != NULL)
-    result = save(path, &studio, options, changes->save, error);
-  if (result == ABBE_OK) out->transparent = changes->alpha;
-  if (result != ABBE_OK || changes->tilt_deg == 0) return result;
+  ABBE_TRY(abbe_scene_load(path, &options, out, error));
+  if (changes->save != NULL) ABBE_TRY(save(path, &studio, options, changes->save, error));
+  out->transparent = changes->alpha;
+  if (changes->tilt_deg == 0) return ABBE_OK;
   return abbe_refractors_tilt(out, changes->tilt_deg * ABBE_DEGREE, changes->axis_deg * ABBE_DEGREE,
                               error);
 }
@@ -273,12 +272,9 @@ abbe_result abbe_scene_input_check_alpha(const abbe_scene *scene, abbe_error *er
 
 abbe_result abbe_scene_input_add_alpha(const abbe_scene *scene, size_t samples, abbe_image *picture,
                                        abbe_error *error) {
-  abbe_image alpha;
-  abbe_result result =
-      abbe_coverage_make(scene, picture->width, picture->height, samples, &alpha, error);
-  if (result == ABBE_OK) result = abbe_image_append(picture, &alpha, error);
-  abbe_image_free(&alpha);
-  return result;
+  ABBE_OWNED(abbe_image, alpha) = {0};
+  ABBE_TRY(abbe_coverage_make(scene, picture->width, picture->height, samples, &alpha, error));
+  return abbe_image_append(picture, &alpha, error);
 }
 
 void abbe_scene_input_note(const abbe_scene *scene) {

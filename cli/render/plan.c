@@ -54,9 +54,7 @@ static abbe_result print_json(const abbe_scene *scene, const abbe_plan *plan, ab
   abbe_scene_input_list_json(scene, root);
   cJSON_AddNumberToObject(root, "wavelengths", (double)plan->desc.wavelengths);
   cJSON_AddNumberToObject(root, "exits", (double)plan->desc.exits);
-  abbe_result result = abbe_command_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, true, error);
 }
 
 int abbe_command_plan(int argc, char **argv) {

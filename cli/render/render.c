@@ -180,25 +180,21 @@ static void note_picture(const request *q) {
 /* By the tracer, where it serves the request best. */
 static abbe_result trace(request *q, const abbe_scene *scene, abbe_error *error) {
   const abbe_traced_picture_desc desc = abbe_render_describe_traced(q);
-  abbe_image image = {0};
+  ABBE_OWNED(abbe_image, image) = {0};
   if (!q->quiet) abbe_scene_input_note(scene);
   if (!q->quiet) note_picture(q);
-  abbe_result result = abbe_scene_input_check_alpha(scene, error);
-  if (result == ABBE_OK)
-    result = abbe_traced_picture_make(&q->picture, scene, &desc, &image, error);
-  if (result == ABBE_OK && q->screen.alpha)
-    result = abbe_scene_input_add_alpha(scene, ABBE_SCENE_INPUT_ALPHA_SAMPLES, &image, error);
-  if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);
-  if (result == ABBE_OK && q->png != NULL) result = abbe_render_write_png(q, &image, error);
-  if (result == ABBE_OK) result = abbe_render_check_in_time(q, scene, &image, error);
-  if (result == ABBE_OK) result = abbe_render_write_traced_stats(q, error);
-  if (result == ABBE_OK && !q->quiet) abbe_preset_options_note_error(&q->picture);
-  if (result == ABBE_OK && !q->quiet && !q->json)
+  ABBE_TRY(abbe_scene_input_check_alpha(scene, error));
+  ABBE_TRY(abbe_traced_picture_make(&q->picture, scene, &desc, &image, error));
+  if (q->screen.alpha)
+    ABBE_TRY(abbe_scene_input_add_alpha(scene, ABBE_SCENE_INPUT_ALPHA_SAMPLES, &image, error));
+  if (q->exr != NULL) ABBE_TRY(abbe_exr_write(q->exr, &image, error));
+  if (q->png != NULL) ABBE_TRY(abbe_render_write_png(q, &image, error));
+  ABBE_TRY(abbe_render_check_in_time(q, scene, &image, error));
+  ABBE_TRY(abbe_render_write_traced_stats(q, error));
+  if (!q->quiet) abbe_preset_options_note_error(&q->picture);
+  if (!q->quiet && !q->json)
     fprintf(stderr, "traced; %.0f ms from start to end\n", abbe_render_process_ms());
-  if (result == ABBE_OK)
-    result = abbe_picture_choice_check(&q->picture, abbe_render_process_ms(), error);
-  abbe_image_free(&image);
-  return result;
+  return abbe_picture_choice_check(&q->picture, abbe_render_process_ms(), error);
 }
 
 /* The frame that the renderer holds, as files. */

@@ -117,16 +117,14 @@ static abbe_camera camera_at(const abbe_camera *first, double rad) {
 
 static abbe_result write_frame(const abbe_render_request *q, const abbe_image *image, size_t number,
                                abbe_error *error) {
-  char *exr = NULL, *png = NULL;
+  ABBE_FREED char *exr = NULL, *png = NULL;
   abbe_render_request own = *q;
-  abbe_result result = abbe_frame_series_name(q->exr, number, &exr, error);
-  if (result == ABBE_OK) result = abbe_frame_series_name(q->png, number, &png, error);
+  ABBE_TRY(abbe_frame_series_name(q->exr, number, &exr, error));
+  ABBE_TRY(abbe_frame_series_name(q->png, number, &png, error));
   own.png = png;
-  if (result == ABBE_OK && exr != NULL) result = abbe_exr_write(exr, image, error);
-  if (result == ABBE_OK && png != NULL) result = abbe_render_write_png(&own, image, error);
-  free(exr);
-  free(png);
-  return result;
+  if (exr != NULL) ABBE_TRY(abbe_exr_write(exr, image, error));
+  if (png != NULL) ABBE_TRY(abbe_render_write_png(&own, image, error));
+  return ABBE_OK;
 }
 
 /* The scene of a frame: the same with another camera, whose parts are the scene's, or all of it at
@@ -141,16 +139,14 @@ static abbe_result make_scene(const abbe_render_request *q, const abbe_scene *sc
   const abbe_frame_series *s = &q->series;
   const double rad = s->around ? 2 * ABBE_PI * (double)i / (double)s->count : 0;
   *out = (frame_scene){.owned = !s->around || s->piece};
-  abbe_result result = ABBE_OK;
   if (s->piece)
-    result = abbe_scene_input_at(scene, q->render.materials, &q->render.changes, scene->time,
-                                 &out->scene, error);
+    ABBE_TRY(abbe_scene_input_at(scene, q->render.materials, &q->render.changes, scene->time,
+                                 &out->scene, error));
   else if (out->owned)
-    result = abbe_frame_series_scene(s, scene, q->render.materials, &q->render.changes, i,
-                                     &out->scene, error);
+    ABBE_TRY(abbe_frame_series_scene(s, scene, q->render.materials, &q->render.changes, i,
+                                     &out->scene, error));
   else
     out->scene = *scene;
-  if (result != ABBE_OK) return result;
   if (!s->piece) {
     if (s->around) out->scene.camera = camera_at(&scene->camera, rad);
     return ABBE_OK;
@@ -169,21 +165,18 @@ static abbe_result draw_frame(const abbe_render_request *q, const abbe_scene *sc
                               const abbe_render_desc *desc, abbe_renderer *renderer,
                               const abbe_context *context, size_t i, frame_scene shown[2],
                               abbe_statistics *statistics, abbe_error *error) {
-  abbe_image image = {0};
+  ABBE_OWNED(abbe_image, image) = {0};
   shown[1] = shown[0];
   shown[0] = (frame_scene){0};
-  abbe_result result = make_scene(q, scene, i, &shown[0], error);
-  if (result == ABBE_OK) result = abbe_renderer_change(renderer, &shown[0].scene, desc, error);
-  if (result == ABBE_OK) free_scene(&shown[1]);
-  if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, statistics, error);
-  if (result == ABBE_OK)
-    result = abbe_renderer_read_blurred(renderer, &shown[0].scene, desc, q->aovs, NULL, NULL,
-                                        &image, error);
-  if (result == ABBE_OK) result = abbe_render_annotate(q, renderer, context, &image, error);
-  if (result == ABBE_OK) result = abbe_frame_series_mark(&q->series, i, &image, error);
-  if (result == ABBE_OK) result = write_frame(q, &image, q->series.first + i, error);
-  abbe_image_free(&image);
-  return result;
+  ABBE_TRY(make_scene(q, scene, i, &shown[0], error));
+  ABBE_TRY(abbe_renderer_change(renderer, &shown[0].scene, desc, error));
+  free_scene(&shown[1]);
+  ABBE_TRY(abbe_renderer_frame(renderer, NULL, NULL, statistics, error));
+  ABBE_TRY(abbe_renderer_read_blurred(renderer, &shown[0].scene, desc, q->aovs, NULL, NULL, &image,
+                                      error));
+  ABBE_TRY(abbe_render_annotate(q, renderer, context, &image, error));
+  ABBE_TRY(abbe_frame_series_mark(&q->series, i, &image, error));
+  return write_frame(q, &image, q->series.first + i, error);
 }
 
 abbe_result abbe_render_frames_draw(const abbe_render_request *q, const abbe_scene *scene,

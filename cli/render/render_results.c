@@ -70,30 +70,18 @@ static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_er
   return root;
 }
 
-/* Takes root. */
-static abbe_result write_json(const request *q, cJSON *root, abbe_error *error) {
-  char *text = abbe_command_json_text(root);
-  cJSON_Delete(root);
-  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the statistics");
-  if (q->json) fputs(text, stdout);
-  abbe_result result = ABBE_OK;
-  if (q->stats != NULL) result = abbe_file_write(q->stats, text, strlen(text), error);
-  free(text);
-  return result;
-}
-
 abbe_result abbe_render_write_stats(const request *q, const abbe_statistics *s,
                                     const abbe_error_bars *bars, const abbe_context *context,
                                     abbe_error *error) {
   if (q->stats == NULL && !q->json) return ABBE_OK;
-  return write_json(q, describe(q, s, bars, context), error);
+  return abbe_command_write_json(describe(q, s, bars, context), true, q->json, q->stats, error);
 }
 
 abbe_result abbe_render_write_traced_stats(const request *q, abbe_error *error) {
   if (q->stats == NULL && !q->json) return ABBE_OK;
   cJSON *root = cJSON_CreateObject();
   describe_picture(q, -1, root);
-  return write_json(q, root, error);
+  return abbe_command_write_json(root, true, q->json, q->stats, error);
 }
 
 abbe_result abbe_render_annotate(const request *q, const abbe_renderer *renderer,
@@ -135,19 +123,16 @@ abbe_result abbe_render_write_png(const request *q, const abbe_image *image, abb
 }
 
 abbe_result abbe_render_save_map(const request *q, abbe_renderer *renderer, abbe_error *error) {
-  abbe_image map = {0};
+  ABBE_OWNED(abbe_image, map) = {0};
   bool thesis = abbe_method_of(abbe_renderer_plan(renderer)->desc.profile)->printed;
   ABBE_TRY(
       q->bands > 0
           ? abbe_renderer_read_map_bands(renderer, q->map.light_index, q->bands, &map, error)
           : abbe_renderer_read_map(renderer, q->map.light_index, !q->render.unfilled, &map, error));
-  abbe_result result = abbe_image_set_attribute(
-      &map, "abbe:unit", thesis ? "display brightness" : "flux a texel, W", error);
-  if (result == ABBE_OK)
-    result = abbe_image_set_attribute(&map, "abbe:scene", q->render.scene, error);
-  if (result == ABBE_OK) result = abbe_exr_write(q->map.save, &map, error);
-  abbe_image_free(&map);
-  return result;
+  ABBE_TRY(abbe_image_set_attribute(&map, "abbe:unit",
+                                    thesis ? "display brightness" : "flux a texel, W", error));
+  ABBE_TRY(abbe_image_set_attribute(&map, "abbe:scene", q->render.scene, error));
+  return abbe_exr_write(q->map.save, &map, error);
 }
 
 void abbe_render_summarise(const request *q, const abbe_statistics *s, double prepared_s) {
@@ -201,12 +186,10 @@ abbe_result abbe_render_check_in_time(request *q, const abbe_scene *scene,
 
 abbe_result abbe_render_check_frame_in_time(request *q, const abbe_scene *scene,
                                             abbe_renderer *renderer, abbe_error *error) {
-  abbe_image layers = {0};
+  ABBE_OWNED(abbe_image, layers) = {0};
   if (!is_open(q) || !abbe_renderer_plan(renderer)->caustics) return ABBE_OK;
-  abbe_result result = abbe_renderer_read(renderer, true, &layers, error);
-  if (result == ABBE_OK) result = abbe_render_check_in_time(q, scene, &layers, error);
-  abbe_image_free(&layers);
-  return result;
+  ABBE_TRY(abbe_renderer_read(renderer, true, &layers, error));
+  return abbe_render_check_in_time(q, scene, &layers, error);
 }
 
 abbe_result abbe_render_check_frame(request *q, const abbe_scene *scene, abbe_renderer *renderer,

@@ -288,12 +288,11 @@ static abbe_result name_checkpoint(request *q, abbe_error *error) {
 static abbe_result print_rates(const request *q, abbe_tracer *tracer, abbe_error *error) {
   if (!q->rates) return ABBE_OK;
   double walk, embree;
-  abbe_result result = abbe_tracer_rates(tracer, &walk, &embree, error);
-  if (result == ABBE_OK)
-    printf("photon walk %.2f million rays/s a thread; Embree alone on the same rays %.2f; share "
-           "%.0f %%\n",
-           1e-6 * walk, 1e-6 * embree, 100 * walk / embree);
-  return result;
+  ABBE_TRY(abbe_tracer_rates(tracer, &walk, &embree, error));
+  printf("photon walk %.2f million rays/s a thread; Embree alone on the same rays %.2f; share "
+         "%.0f %%\n",
+         1e-6 * walk, 1e-6 * embree, 100 * walk / embree);
+  return ABBE_OK;
 }
 
 /* The image of fewer passes is not in a checkpoint of more, nor that of others. */
@@ -357,10 +356,9 @@ static abbe_result trace(request *q, abbe_tracer *tracer, abbe_error *error) {
 }
 
 static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
-  abbe_tracer *tracer = NULL;
+  ABBE_HELD(abbe_tracer, tracer) = NULL;
   q->traced = scene;
-  abbe_result result = abbe_map_options_resolve(&q->map, scene, false, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_map_options_resolve(&q->map, scene, false, error));
   q->desc.map_light = q->map.light_index;
   if (q->map.like != NULL) {
     q->desc.layout = &q->map.layout;
@@ -369,13 +367,12 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   q->desc.no_picture = q->exr == NULL && q->png == NULL && q->map.save != NULL;
   q->desc.no_map = q->map.save == NULL && !q->desc.no_picture;
   if (q->desc.physics.matched)
-    result = abbe_matched_physics(scene, q->desc.min_nm, q->desc.max_nm, &q->desc.physics, error);
-  if (result == ABBE_OK) result = abbe_tracer_make(scene, &q->desc, &tracer, error);
-  if (result == ABBE_OK) result = print_rates(q, tracer, error);
+    ABBE_TRY(abbe_matched_physics(scene, q->desc.min_nm, q->desc.max_nm, &q->desc.physics, error));
+  ABBE_TRY(abbe_tracer_make(scene, &q->desc, &tracer, error));
+  ABBE_TRY(print_rates(q, tracer, error));
   const bool wants = q->exr || q->png || q->map.save || q->stats || q->json;
-  if (result == ABBE_OK && (wants || q->part_end > 0 || q->merge)) result = trace(q, tracer, error);
-  abbe_tracer_free(tracer);
-  return result;
+  if ((wants || q->part_end > 0 || q->merge)) ABBE_TRY(trace(q, tracer, error));
+  return ABBE_OK;
 }
 
 int abbe_command_trace(int argc, char **argv) {

@@ -50,14 +50,7 @@ static abbe_result write_stats(const abbe_trace_request *q, const abbe_tracer *t
   cJSON_AddNumberToObject(root, "cut", (double)s.cuts);
   cJSON_AddNumberToObject(root, "gather_radius_m", s.radius);
   add_ledger(root, &s.ledger, !q->desc.no_map);
-  char *text = abbe_command_json_text(root);
-  cJSON_Delete(root);
-  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the statistics");
-  if (q->json) fputs(text, stdout);
-  abbe_result result = ABBE_OK;
-  if (q->stats != NULL) result = abbe_file_write(q->stats, text, strlen(text), error);
-  free(text);
-  return result;
+  return abbe_command_write_json(root, true, q->json, q->stats, error);
 }
 
 static abbe_result write_exr(const abbe_trace_request *q, const char *path, const abbe_image *image,
@@ -202,9 +195,8 @@ void abbe_trace_frames_check(const abbe_trace_request *q, struct argp_state *sta
 /* The checkpoint stands beside the frame's first file. */
 static abbe_result name_files(abbe_trace_request *own, size_t number, char *name[2],
                               abbe_error *error) {
-  abbe_result result = abbe_frame_series_name(own->exr, number, &name[0], error);
-  if (result == ABBE_OK) result = abbe_frame_series_name(own->png, number, &name[1], error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_frame_series_name(own->exr, number, &name[0], error));
+  ABBE_TRY(abbe_frame_series_name(own->png, number, &name[1], error));
   own->exr = name[0];
   own->png = name[1];
   const char *beside = own->exr != NULL ? own->exr : own->png;
@@ -237,13 +229,11 @@ static abbe_result trace_frame(const abbe_trace_request *q, const abbe_scene *sc
 abbe_result abbe_trace_frames(const abbe_trace_request *q, const abbe_scene *scene,
                               abbe_trace_frame trace_one, abbe_error *error) {
   const abbe_frame_series *s = &q->series;
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < s->count && result == ABBE_OK; i++)
+  for (size_t i = 0; i < s->count; i++)
     if (abbe_frame_series_draws(s, i, q->exr, q->png))
-      result = trace_frame(q, scene, i, trace_one, error);
-  if (result == ABBE_OK && q->png != NULL && s->part.parts == 0)
-    result = abbe_frame_series_merge(s, q->png, error);
-  return result;
+      ABBE_TRY(trace_frame(q, scene, i, trace_one, error));
+  if (q->png != NULL && s->part.parts == 0) ABBE_TRY(abbe_frame_series_merge(s, q->png, error));
+  return ABBE_OK;
 }
 
 abbe_result abbe_trace_passes(const abbe_trace_request *q, const abbe_trace_run_desc *run,

@@ -189,18 +189,17 @@ static abbe_result begin(const view_options *o, const char *path, const abbe_stu
                               .wavelengths = o->wavelengths,
                               .photons = o->photons,
                               .map_size = o->map_size};
-  abbe_result result =
-      own != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
-  for (size_t i = 0; i < o->changes.set_count && result == ABBE_OK; i++) {
+  if (own == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
+  for (size_t i = 0; i < o->changes.set_count; i++) {
     const char *set = o->changes.set[i], *equals = strchr(set, '=');
     char key[256];
     if (equals == NULL || equals == set || (size_t)(equals - set) >= sizeof key)
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "'%.80s' sets nothing; write KEY=VALUE, such as camera.fov=30", set);
     snprintf(key, sizeof key, "%.*s", (int)(equals - set), set);
-    result = abbe_view_document_set(out, key, equals + 1, error);
+    ABBE_TRY(abbe_view_document_set(out, key, equals + 1, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* A name that is none, or what is kept would be the scene or what it is made of. */

@@ -220,9 +220,8 @@ static void name_of(const abbe_view_session *session, size_t frame, char out[LON
 abbe_result abbe_view_turn_begin(abbe_view_session *session, abbe_error *error) {
   char name[LONGEST];
   name_of(session, 0, name);
-  abbe_result result = abbe_view_keep_rests(session, error);
-  if (result == ABBE_OK) result = abbe_view_keep_check(session, name, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_view_keep_rests(session, error));
+  ABBE_TRY(abbe_view_keep_check(session, name, error));
   session->turn_frame = 1;
   session->turn_serial = session->state.refine.serial;
   session->turned = false;

@@ -33,13 +33,11 @@ abbe_result abbe_view_inspect_begin(abbe_view_session *app, abbe_error *error) {
   i->given[0] = i->look.view.from;
   i->given[1] = i->look.view.to;
   if (i->look.wavelength_nm == 0) i->look.wavelength_nm = 550;
-  abbe_result result = abbe_display_list(app->ocio, &app->views, error);
-  if (result == ABBE_OK)
-    result = abbe_view_session_begin_view(app, i->pictures->picture[i->at].encoded, error);
-  if (result == ABBE_OK) result = abbe_ui_make(error);
-  if (result == ABBE_OK && i->listener != NULL)
-    result = abbe_view_listen_start(i->listener, app->judge.wake, error);
-  return result;
+  ABBE_TRY(abbe_display_list(app->ocio, &app->views, error));
+  ABBE_TRY(abbe_view_session_begin_view(app, i->pictures->picture[i->at].encoded, error));
+  ABBE_TRY(abbe_ui_make(error));
+  if (i->listener != NULL) ABBE_TRY(abbe_view_listen_start(i->listener, app->judge.wake, error));
+  return ABBE_OK;
 }
 
 void abbe_view_inspect_end(abbe_view_session *app) {

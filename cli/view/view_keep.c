@@ -270,15 +270,13 @@ static abbe_result keep_scene(const abbe_view_session *session, const char *targ
   studio.folder = strcmp(folder, ".") == 0 ? "" : folder;
   const abbe_scene_options options = {
       .set = set, .set_count = now->set_count + exposed, .studio = &studio};
-  char *text = NULL;
+  ABBE_FREED char *text = NULL;
   size_t size = 0;
-  abbe_result result = abbe_scene_text(now->path, &options, &text, &size, error);
-  if (result == ABBE_OK && !abbe_studio_is_stone(now->path) &&
+  ABBE_TRY(abbe_scene_text(now->path, &options, &text, &size, error));
+  if (!abbe_studio_is_stone(now->path) &&
       !abbe_view_keep_same_file(folder_of(now->path, here), folder))
-    result = name_files(session, &text, &size, error);
-  if (result == ABBE_OK) result = abbe_file_write(target, text, size, error);
-  free(text);
-  return result;
+    ABBE_TRY(name_files(session, &text, &size, error));
+  return abbe_file_write(target, text, size, error);
 }
 
 /* Neither a scene that a step leads to nor what this one is made of is written over. */
@@ -351,16 +349,14 @@ abbe_result abbe_view_keep(abbe_view_session *session, abbe_error *error) {
   abbe_view_keep_name(session, ".exr", exr, sizeof exr);
   abbe_view_keep_name(session, ".png", png, sizeof png);
   abbe_view_keep_name(session, ".yaml", yaml, sizeof yaml);
-  abbe_result result = abbe_view_keep_rests(session, error);
-  if (result == ABBE_OK) result = abbe_view_keep_check(session, exr, error);
-  if (result == ABBE_OK) result = abbe_view_keep_check(session, png, error);
-  if (result == ABBE_OK) result = abbe_view_keep_check(session, yaml, error);
-  if (result == ABBE_OK) result = abbe_exr_write(exr, image, error);
-  if (result == ABBE_OK)
-    result =
-        rendered ? abbe_view_keep_png(session, image, png, error) : keep_shown(session, png, error);
-  if (result == ABBE_OK) result = keep_scene(session, yaml, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_view_keep_rests(session, error));
+  ABBE_TRY(abbe_view_keep_check(session, exr, error));
+  ABBE_TRY(abbe_view_keep_check(session, png, error));
+  ABBE_TRY(abbe_view_keep_check(session, yaml, error));
+  ABBE_TRY(abbe_exr_write(exr, image, error));
+  ABBE_TRY(rendered ? abbe_view_keep_png(session, image, png, error)
+                    : keep_shown(session, png, error));
+  ABBE_TRY(keep_scene(session, yaml, error));
   print_command(session);
   snprintf(session->note, sizeof session->note, "kept %.300s, %.300s, %.300s%s", exr, png, yaml,
            session->elsewhere[0] != '\0'

@@ -204,10 +204,9 @@ static abbe_result do_drag(script *s, abbe_error *error) {
   enum { PLACES = 12 };
   double from[2], to[2], seconds = 0;
   int button;
-  abbe_result result = aim(s, 1, from, error);
-  if (result == ABBE_OK) result = aim(s, 2, to, error);
-  if (result == ABBE_OK) result = read_held(s, 3, &button, &seconds, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(aim(s, 1, from, error));
+  ABBE_TRY(aim(s, 2, to, error));
+  ABBE_TRY(read_held(s, 3, &button, &seconds, error));
   point(s, from);
   pump(s);
   set_button(s, button, true);

@@ -43,6 +43,7 @@ typedef struct abbe_display_desc {
  * ABBE_INVALID_ARGUMENT for a white that is none. */
 abbe_result abbe_display_make(const abbe_display_desc *desc, abbe_display **out, abbe_error *error);
 void abbe_display_free(abbe_display *display);
+ABBE_HOLDS(abbe_display)
 
 /* Replaces the first three channels of the image by display-encoded values, and the image's xy and
  * curve by what they mean: found from the configuration where it states how the view's colour space

@@ -41,13 +41,12 @@ static abbe_result show_colours(const abbe_display *display, float (*rgb)[3], si
                                 abbe_error *error) {
   static const char *const names[] = {"R", "G", "B"};
   enum { ROW = 1024 }; /* images have a widest side */
-  abbe_image image;
+  ABBE_OWNED(abbe_image, image) = {0};
   ABBE_TRY(abbe_image_make(ROW, (count + ROW - 1) / ROW, 3, names, &image, error));
   memcpy(image.data, rgb, count * sizeof *rgb);
-  abbe_result result = abbe_display_apply(display, &image, error);
-  if (result == ABBE_OK) memcpy(rgb, image.data, count * sizeof *rgb);
-  abbe_image_free(&image);
-  return result;
+  ABBE_TRY(abbe_display_apply(display, &image, error));
+  memcpy(rgb, image.data, count * sizeof *rgb);
+  return ABBE_OK;
 }
 
 /* What all nodes show, or the places so far beyond each. */

@@ -194,8 +194,7 @@ static bool can_be_held(const abbe_exr_stream *s, const abbe_exr_layout *l, int 
 
 abbe_result abbe_exr_check_layout(const abbe_exr_stream *s, const abbe_exr_layout *l, int channels,
                                   abbe_error *error) {
-  abbe_result result = check_channels(s, l, channels, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_channels(s, l, channels, error));
   if (!can_be_held(s, l, channels))
     return abbe_error_set(
         error, ABBE_PARSE,
@@ -206,11 +205,11 @@ abbe_result abbe_exr_check_layout(const abbe_exr_stream *s, const abbe_exr_layou
         (long long)abbe_exr_width(l->display), (long long)abbe_exr_height(l->display), channels,
         (long long)s->size, ABBE_IMAGE_MAX_SIDE);
   const exr_attr_box2i_t window[] = {l->data, l->display};
-  for (int i = 0; result == ABBE_OK && i < 2; i++)
-    result = abbe_image_check_expansion(s->path, (size_t)abbe_exr_width(window[i]),
+  for (int i = 0; i < 2; i++)
+    ABBE_TRY(abbe_image_check_expansion(s->path, (size_t)abbe_exr_width(window[i]),
                                         (size_t)abbe_exr_height(window[i]), (size_t)channels,
-                                        (size_t)s->size, ABBE_EXR_FREE_BYTES, error);
-  return result;
+                                        (size_t)s->size, ABBE_EXR_FREE_BYTES, error));
+  return ABBE_OK;
 }
 
 /* ---- parts ---- */

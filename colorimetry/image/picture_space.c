@@ -93,9 +93,8 @@ abbe_result abbe_picture_space_find(const abbe_image *image, bool is_xyz, const 
                                     abbe_picture_space *out, abbe_error *error) {
   *out = (abbe_picture_space){.space = is_xyz ? ABBE_RGB_SPACE_XYZ : ABBE_RGB_SPACE_COUNT};
   const double *xy = NULL;
-  abbe_result result = find_observer(image, name, &out->observer, error);
-  if (result == ABBE_OK && !is_xyz) result = find_interop(image, name, &xy, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(find_observer(image, name, &out->observer, error));
+  if (!is_xyz) ABBE_TRY(find_interop(image, name, &xy, error));
   const char *word = abbe_image_attribute_text(image, "abbe:space");
   if (xy != NULL) word = NULL; /* the ID is what other programs write last */
   for (int s = 0; out->space == ABBE_RGB_SPACE_COUNT && word && s < ABBE_RGB_SPACE_COUNT; s++)

@@ -172,7 +172,7 @@ abbe_result abbe_false_colours_draw(const char *path, const abbe_false_colours_d
 
 abbe_result abbe_false_colours_write(const char *path, const abbe_image *image, const char *layer,
                                      const char *name, abbe_error *error) {
-  float *value;
+  ABBE_FREED float *value = NULL;
   char label[400], title[400];
   bool is_error;
   ABBE_TRY(
@@ -183,7 +183,5 @@ abbe_result abbe_false_colours_write(const char *path, const abbe_image *image, 
                                         .is_error = is_error,
                                         .title = title,
                                         .label = label};
-  abbe_result result = abbe_false_colours_draw(path, &desc, value, error);
-  free(value);
-  return result;
+  return abbe_false_colours_draw(path, &desc, value, error);
 }

@@ -104,9 +104,9 @@ static abbe_result add_material(sheet *s, size_t index, abbe_error *error) {
   const abbe_material *m = s->chart->material[index];
   if (abbe_material_is_conductor(m)) return add_conductor(s, index, error);
   int colour = colour_of(index);
-  abbe_result result =
-      add_curve(s, &m->dispersion, m->min_nm, m->max_nm, ABBE_CHART_LINE, colour, m->name, error);
-  if (result != ABBE_OK || !m->extrapolate) return result;
+  ABBE_TRY(
+      add_curve(s, &m->dispersion, m->min_nm, m->max_nm, ABBE_CHART_LINE, colour, m->name, error));
+  if (!m->extrapolate) return ABBE_OK;
   ABBE_TRY(
       add_curve(s, &m->dispersion, s->from, m->min_nm, ABBE_CHART_DASHED, colour, NULL, error));
   return add_curve(s, &m->dispersion, m->max_nm, s->to, ABBE_CHART_DASHED, colour, NULL, error);
@@ -124,9 +124,7 @@ static abbe_result add_fit(sheet *s, size_t index, int which, abbe_error *error)
   int colour = alone ? which + 2 : colour_of(index);
   snprintf(label, sizeof label, "%s%sCauchy, %zu terms", alone ? "" : m->name, alone ? "" : ": ",
            fit->terms);
-  abbe_result result = ABBE_OK;
-  if (alone) result = add_curve(s, &d, from, to, ABBE_CHART_DASHED, colour, label, error);
-  if (result != ABBE_OK) return result;
+  if (alone) ABBE_TRY(add_curve(s, &d, from, to, ABBE_CHART_DASHED, colour, label, error));
   abbe_chart_style style = !alone && which == 0 ? ABBE_CHART_DASHED : ABBE_CHART_LINE;
   if (add_series(s->residuals, STEPS + 1, style, colour, label, &x, &y) == NULL)
     return no_memory(error);

@@ -38,12 +38,11 @@ static abbe_result set_colour(const abbe_image *image, avifImage *out, abbe_erro
                                 ? AVIF_MATRIX_COEFFICIENTS_BT2020_NCL
                                 : AVIF_MATRIX_COEFFICIENTS_BT709;
   if (said || !abbe_rgb_encoding_is_known(image->xy, image->curve)) return ABBE_OK;
-  void *icc = NULL;
+  ABBE_FREED void *icc = NULL;
   size_t size = 0;
-  abbe_result result = abbe_rgb_encoding_profile(image->xy, image->curve, &icc, &size, error);
-  if (result == ABBE_OK) avifImageSetProfileICC(out, icc, size);
-  free(icc);
-  return result;
+  ABBE_TRY(abbe_rgb_encoding_profile(image->xy, image->curve, &icc, &size, error));
+  avifImageSetProfileICC(out, icc, size);
+  return ABBE_OK;
 }
 
 static uint16_t *quantize(const abbe_image *image, int bits) {

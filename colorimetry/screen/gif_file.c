@@ -218,26 +218,23 @@ static void put_head(const gif *g, bool moves) {
 /* Shown for so many hundredths of a second. */
 static abbe_result put_picture(const char *path, gif *g, const unsigned char *pixel,
                                size_t hundredths, abbe_error *error) {
-  unsigned char *index = malloc(g->width * g->height);
+  ABBE_FREED unsigned char *index = malloc(g->width * g->height);
   if (index == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "%s: there is no memory for its pixels", path);
   choose_colours(g, pixel);
-  const abbe_result result = dither(path, g, pixel, index, error);
-  if (result == ABBE_OK) {
-    fputs("!\xf9\x04\x04", g->to); /* the next picture lies on this one */
-    put_u16(g->to, hundredths);
-    put_u16(g->to, 0);
-    fputc(',', g->to);
-    put_u16(g->to, 0);
-    put_u16(g->to, 0);
-    put_u16(g->to, g->width);
-    put_u16(g->to, g->height);
-    fputc(0x87, g->to);
-    fwrite(g->palette, 3, COLOURS, g->to);
-    put_indices(g, index, g->width * g->height);
-  }
-  free(index);
-  return result;
+  ABBE_TRY(dither(path, g, pixel, index, error));
+  fputs("!\xf9\x04\x04", g->to); /* the next picture lies on this one */
+  put_u16(g->to, hundredths);
+  put_u16(g->to, 0);
+  fputc(',', g->to);
+  put_u16(g->to, 0);
+  put_u16(g->to, 0);
+  put_u16(g->to, g->width);
+  put_u16(g->to, g->height);
+  fputc(0x87, g->to);
+  fwrite(g->palette, 3, COLOURS, g->to);
+  put_indices(g, index, g->width * g->height);
+  return ABBE_OK;
 }
 
 /* The end of a GIF, or of its beginning. */
@@ -260,7 +257,7 @@ static abbe_result begin(const char *path, abbe_file_writer *writer, gif **out, 
 
 abbe_result abbe_gif_write(const char *path, const abbe_image *image, int bits, abbe_error *error) {
   abbe_file_writer writer;
-  unsigned char *pixel;
+  ABBE_FREED unsigned char *pixel = NULL;
   gif *g;
   (void)bits;
   if (abbe_rgb_encoding_is_known(image->xy, image->curve) &&
@@ -270,15 +267,11 @@ abbe_result abbe_gif_write(const char *path, const abbe_image *image, int bits, 
                           "their colour space",
                           path);
   ABBE_TRY(abbe_screen_file_bytes(path, image, 3, &pixel, error));
-  abbe_result result = begin(path, &writer, &g, error);
-  if (result == ABBE_OK) {
-    g->width = image->width;
-    g->height = image->height;
-    put_head(g, false);
-    result = end(g, &writer, put_picture(path, g, pixel, 0, error), error);
-  }
-  free(pixel);
-  return result;
+  ABBE_TRY(begin(path, &writer, &g, error));
+  g->width = image->width;
+  g->height = image->height;
+  put_head(g, false);
+  return end(g, &writer, put_picture(path, g, pixel, 0, error), error);
 }
 
 abbe_result abbe_gif_move(const char *path, const char *const *frame, size_t count,

@@ -31,14 +31,13 @@ bool abbe_lut_is_meant(const char *path) {
 static abbe_result make_nodes(const abbe_lut_desc *desc, const shape *s, abbe_image *out,
                               abbe_error *error) {
   const size_t n = desc->nodes;
-  abbe_result result =
-      abbe_image_make(n, n * n, 3, (const char *const[]){"R", "G", "B"}, out, error);
-  for (size_t i = 0; result == ABBE_OK && i < n * n * n; i++) {
+  ABBE_TRY(abbe_image_make(n, n * n, 3, (const char *const[]){"R", "G", "B"}, out, error));
+  for (size_t i = 0; i < n * n * n; i++) {
     const size_t at[3] = {i % n, i / n % n, i / n / n};
     for (int c = 0; c < 3; c++)
       out->data[3 * i + (size_t)c] = (float)light_of(s, (double)at[c] / (double)(n - 1));
   }
-  return result == ABBE_OK ? abbe_display_apply(desc->display, out, error) : result;
+  return abbe_display_apply(desc->display, out, error);
 }
 
 /* In full, whatever the locale says. */

@@ -72,13 +72,10 @@ static void divide(const float *alpha, size_t stride, abbe_image *picked) {
 static abbe_result add_alpha(const float *alpha, size_t stride, abbe_image *picked,
                              abbe_error *error) {
   static const char *const name[] = {"A"};
-  abbe_image own;
-  abbe_result result = abbe_image_make(picked->width, picked->height, 1, name, &own, error);
-  for (size_t i = 0; result == ABBE_OK && i < own.width * own.height; i++)
-    own.data[i] = alpha[i * stride];
-  if (result == ABBE_OK) result = abbe_image_append(picked, &own, error);
-  abbe_image_free(&own);
-  return result;
+  ABBE_OWNED(abbe_image, own) = {0};
+  ABBE_TRY(abbe_image_make(picked->width, picked->height, 1, name, &own, error));
+  for (size_t i = 0; i < own.width * own.height; i++) own.data[i] = alpha[i * stride];
+  return abbe_image_append(picked, &own, error);
 }
 
 /* In the picture's own space where the configuration may have it; of other primaries the pixels

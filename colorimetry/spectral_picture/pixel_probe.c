@@ -74,10 +74,10 @@ static abbe_result take_colour(const abbe_image *image, const char *layer, const
   bool is_xyz;
   p->has_colour = find_triple(image, layer, &is_xyz, at);
   if (!p->has_colour) return ABBE_OK;
-  abbe_result result = abbe_picture_space_find(image, is_xyz, name, &p->space, error);
+  ABBE_TRY(abbe_picture_space_find(image, is_xyz, name, &p->space, error));
   const double rgb[3] = {p->mean[at[0]], p->mean[at[1]], p->mean[at[2]]};
-  if (result == ABBE_OK) abbe_rgb_space_apply(p->space.to_xyz, rgb, p->xyz);
-  return result;
+  abbe_rgb_space_apply(p->space.to_xyz, rgb, p->xyz);
+  return ABBE_OK;
 }
 
 static abbe_result take_spectrum(const char *name, const abbe_spectral_view *view,

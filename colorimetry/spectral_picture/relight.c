@@ -126,21 +126,18 @@ static abbe_result describe(const abbe_image *image, const abbe_spectral_channel
   abbe_rgb_space_chromaticities(d->space, out->xy);
   out->display_window = image->display_window;
   out->data_window = image->data_window;
-  abbe_result result =
-      abbe_image_set_attribute(out, "abbe:space", abbe_rgb_space_name(d->space), error);
-  if (result == ABBE_OK)
-    result =
-        abbe_image_set_attribute(out, "abbe:observer", abbe_observer_text(d->view.observer), error);
-  if (result == ABBE_OK && light != NULL)
-    result = abbe_image_set_attribute(out, "abbe:illuminant", abbe_illuminant_name(light), error);
-  if (result == ABBE_OK) result = abbe_image_set_attribute(out, "abbe:unit", unit_of(c, d), error);
-  if (result == ABBE_OK && d->bands)
-    result = abbe_image_set_attribute(out, "spectralLayoutVersion", "1.0", error);
-  for (size_t i = 0; i < sizeof kept / sizeof *kept && result == ABBE_OK; i++) {
+  ABBE_TRY(abbe_image_set_attribute(out, "abbe:space", abbe_rgb_space_name(d->space), error));
+  ABBE_TRY(
+      abbe_image_set_attribute(out, "abbe:observer", abbe_observer_text(d->view.observer), error));
+  if (light != NULL)
+    ABBE_TRY(abbe_image_set_attribute(out, "abbe:illuminant", abbe_illuminant_name(light), error));
+  ABBE_TRY(abbe_image_set_attribute(out, "abbe:unit", unit_of(c, d), error));
+  if (d->bands) ABBE_TRY(abbe_image_set_attribute(out, "spectralLayoutVersion", "1.0", error));
+  for (size_t i = 0; i < sizeof kept / sizeof *kept; i++) {
     const char *text = abbe_image_attribute_text(image, kept[i]);
-    if (text != NULL) result = abbe_image_set_attribute(out, kept[i], text, error);
+    if (text != NULL) ABBE_TRY(abbe_image_set_attribute(out, kept[i], text, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result relight(const abbe_image *image, const char *name,

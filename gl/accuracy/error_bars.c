@@ -163,8 +163,7 @@ static abbe_result draw_variants(work *w, size_t variants, abbe_error *error) {
     abbe_render_desc request;
     abbe_image image = {0};
     abbe_error_bars_variant(&w->request, &w->map, i, variants, &layout, &request);
-    result = draw(w, request, &image, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(draw(w, request, &image, error));
     for (size_t p = 0; p < pixels; p++)
       for (size_t c = 0; c < 3; c++) {
         double d = (double)at(&image, p, c) - (double)at(&w->picture, p, c);
@@ -296,7 +295,7 @@ static void light_of(const work *w, const eye *e, size_t first, double *out) {
 static abbe_result summarise_all(work *w, abbe_error_bars *bars, abbe_error *error) {
   static const double d65[3] = {0.95047, 1, 1.08883};
   size_t pixels = w->picture.width * w->picture.height;
-  double *light = malloc(3 * pixels * sizeof *light);
+  ABBE_FREED double *light = malloc(3 * pixels * sizeof *light);
   if (light == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for error bars");
   double *sorted = light + pixels, *colour = sorted + pixels;
   eye e;
@@ -304,16 +303,15 @@ static abbe_result summarise_all(work *w, abbe_error_bars *bars, abbe_error *err
   light_of(w, &e, 0, sorted);
   double white = threshold(sorted, pixels, 0.01, true);
   for (int c = 0; c < 3; c++) e.white[c] = d65[c] * (isfinite(white) ? white : 1);
-  const abbe_result result = find_colour_errors(w, bars, &e, colour, error);
-  if (result == ABBE_OK) summarise(w, bars, colour, NULL, 0, &bars->whole);
+  ABBE_TRY(find_colour_errors(w, bars, &e, colour, error));
+  summarise(w, bars, colour, NULL, 0, &bars->whole);
   size_t caustic = w->picture.channels == 10 ? 7 : 0;
-  if (result == ABBE_OK && caustic > 0) {
+  if (caustic > 0) {
     light_of(w, &e, caustic, light);
     memcpy(sorted, light, pixels * sizeof *light);
     summarise(w, bars, colour, light, threshold(sorted, pixels, 0.95, false), &bars->caustic);
   }
-  free(light);
-  return result;
+  return ABBE_OK;
 }
 
 /* All of it */
@@ -408,12 +406,10 @@ abbe_result abbe_error_picture_write(const char *path, const abbe_error_bars *ba
                                         .label = "error of Y: radiance, W/(m2 sr)"};
   abbe_picture_space space;
   ABBE_TRY(abbe_picture_space_find(&bars->mean, false, "the mean", &space, error));
-  float *value = malloc(desc.width * desc.height * sizeof *value);
+  ABBE_FREED float *value = malloc(desc.width * desc.height * sizeof *value);
   if (value == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory for %zu errors",
                           desc.width * desc.height);
   errors_of_y(bars, space.to_xyz, value);
-  abbe_result result = abbe_false_colours_draw(path, &desc, value, error);
-  free(value);
-  return result;
+  return abbe_false_colours_draw(path, &desc, value, error);
 }

@@ -46,10 +46,10 @@ typedef struct reader {
 static abbe_result get_positive(const reader *r, abbe_yaml_node node, const char *key,
                                 double *out) {
   *out = -1;
-  abbe_result result = abbe_yaml_get_number(r->yaml, node, key, 0, 1e9, out, r->error);
-  if (result == ABBE_OK && *out < 0)
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, node, key, 0, 1e9, out, r->error));
+  if (*out < 0)
     return abbe_yaml_fail(r->yaml, node, r->error, "a point of a front has no '%s'", key);
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result get_counts(const reader *r, abbe_yaml_node node, abbe_render_desc *d) {
@@ -133,13 +133,11 @@ static abbe_result read_margins(const reader *r, abbe_yaml_node node, abbe_prese
 
 static abbe_result copy_text(const reader *r, abbe_yaml_node node, const char *key, char *out,
                              size_t size) {
-  char *text = NULL;
-  abbe_result result = abbe_yaml_get_string(r->yaml, node, key, &text, r->error);
-  if (result == ABBE_OK && text == NULL)
-    result = abbe_yaml_fail(r->yaml, node, r->error, "'%s' is not stated", key);
-  if (result == ABBE_OK) snprintf(out, size, "%s", text);
-  free(text);
-  return result;
+  ABBE_FREED char *text = NULL;
+  ABBE_TRY(abbe_yaml_get_string(r->yaml, node, key, &text, r->error));
+  if (text == NULL) return abbe_yaml_fail(r->yaml, node, r->error, "'%s' is not stated", key);
+  snprintf(out, size, "%s", text);
+  return ABBE_OK;
 }
 
 static abbe_result read_front(const reader *r, abbe_yaml_node node, abbe_preset_front *out) {
@@ -162,19 +160,17 @@ static abbe_result read_front(const reader *r, abbe_yaml_node node, abbe_preset_
 
 static abbe_result read_all(const reader *r, abbe_presets *out) {
   abbe_yaml_node root = abbe_yaml_root(r->yaml), classes;
-  abbe_result result = copy_text(r, root, "error", out->error, sizeof out->error);
-  if (result == ABBE_OK)
-    result = copy_text(r, root, "what", out->error_text, sizeof out->error_text);
-  if (result == ABBE_OK) result = copy_text(r, root, "run", out->run, sizeof out->run);
-  if (result == ABBE_OK) result = abbe_yaml_require(r->yaml, root, "classes", &classes, r->error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(copy_text(r, root, "error", out->error, sizeof out->error));
+  ABBE_TRY(copy_text(r, root, "what", out->error_text, sizeof out->error_text));
+  ABBE_TRY(copy_text(r, root, "run", out->run, sizeof out->run));
+  ABBE_TRY(abbe_yaml_require(r->yaml, root, "classes", &classes, r->error));
   size_t count = abbe_yaml_count(r->yaml, classes);
   if (!abbe_yaml_is_sequence(r->yaml, classes) || count > ABBE_PRESET_CLASS_COUNT)
     return abbe_yaml_fail(r->yaml, classes, r->error, "classes is a list of at most %d",
                           ABBE_PRESET_CLASS_COUNT);
-  for (size_t i = 0; i < count && result == ABBE_OK; i++)
-    result = read_front(r, abbe_yaml_item(r->yaml, classes, i), &out->front[out->count++]);
-  return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, root, "file", r->error) : result;
+  for (size_t i = 0; i < count; i++)
+    ABBE_TRY(read_front(r, abbe_yaml_item(r->yaml, classes, i), &out->front[out->count++]));
+  return abbe_yaml_check_keys(r->yaml, root, "file", r->error);
 }
 
 const char *abbe_presets_shipped(size_t *size) {

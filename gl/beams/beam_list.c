@@ -112,14 +112,12 @@ static void fill_tint(const abbe_beam_list *list, size_t refractor, float *out) 
 static abbe_result make_tints(abbe_beam_list *list, abbe_error *error) {
   const size_t surfaces = abbe_plan_surfaces(plan_of(list)), each = intervals_of(list) * PARTS;
   if (plan_of(list)->tints == 0) return ABBE_OK;
-  float *tint = calloc(surfaces * each, sizeof *tint);
+  ABBE_FREED float *tint = calloc(surfaces * each, sizeof *tint);
   if (tint == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the colours of beams");
   for (size_t r = 0; r < surfaces; r++) fill_tint(list, r, tint + r * each);
-  abbe_result result = abbe_gpu_make_buffer(scene_of(list)->gpu, surfaces * each * sizeof *tint,
-                                            tint, &list->tints, error);
-  free(tint);
-  return result;
+  return abbe_gpu_make_buffer(scene_of(list)->gpu, surfaces * each * sizeof *tint, tint,
+                              &list->tints, error);
 }
 
 static abbe_result make_colours(abbe_beam_list *list, abbe_error *error) {
@@ -232,9 +230,8 @@ static void list_chunk(abbe_beam_list *list, size_t light, const abbe_hit_batch 
 static abbe_result list_whole(abbe_beam_list *list, size_t light, const abbe_hit_batch *b,
                               size_t chunk, size_t *beams, abbe_error *error) {
   abbe_gpu *gpu = scene_of(list)->gpu;
-  abbe_result result = ABBE_OK;
   *beams = 0;
-  while (result == ABBE_OK && !gpu->stopped) {
+  while (!gpu->stopped) {
     list_chunk(list, light, b, chunk);
     const size_t found = abbe_gpu_read_count(gpu, list->beams), more = found + found / 4;
     if (found <= list->room) {
@@ -243,22 +240,21 @@ static abbe_result list_whole(abbe_beam_list *list, size_t light, const abbe_hit
     }
     /* What fitted a capacity before fits it still where chunks are split. */
     if (chunk == 0 && found > MOST_BEAMS) list->chunks *= found / (MOST_BEAMS * 4 / 5) + 1;
-    result = make_room(list, chunk == 0 && more > MOST_BEAMS ? MOST_BEAMS : more, error);
+    ABBE_TRY(make_room(list, chunk == 0 && more > MOST_BEAMS ? MOST_BEAMS : more, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* Runs a batch of the paths that are traced. */
 static abbe_result run_batch(const abbe_beam_use *to, size_t light, const abbe_hit_batch *b,
                              abbe_error *error) {
   abbe_gpu *gpu = scene_of(to->list)->gpu;
-  abbe_result result = ABBE_OK;
-  for (size_t k = 0; k < to->list->chunks && result == ABBE_OK && !gpu->stopped; k++) {
+  for (size_t k = 0; k < to->list->chunks && !gpu->stopped; k++) {
     size_t beams = 0;
-    result = list_whole(to->list, light, b, k, &beams, error);
-    if (result == ABBE_OK && beams > 0) result = to->use(to->user, beams, error);
+    ABBE_TRY(list_whole(to->list, light, b, k, &beams, error));
+    if (beams > 0) ABBE_TRY(to->use(to->user, beams, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* All wavelengths in batches that share a node, so that each interval is in one of them. */
@@ -268,16 +264,15 @@ static abbe_result run_light(const abbe_beam_use *to, size_t count, size_t light
   abbe_gpu *gpu = scene_of(to->list)->gpu;
   const size_t n = plan_of(to->list)->desc.wavelengths, most = c->trace.hits.stride;
   abbe_hit_batch b = {0};
-  abbe_result result = abbe_photon_start_run(&c->start, light, error);
-  for (size_t known = 0; known < n && result == ABBE_OK; known = b.first + b.count) {
+  ABBE_TRY(abbe_photon_start_run(&c->start, light, error));
+  for (size_t known = 0; known < n; known = b.first + b.count) {
     b.first = known == 0 ? 0 : known - 1;
     b.count = n - b.first < most ? n - b.first : most;
     abbe_trace_pass_ways(&c->trace, light, b.first, b.count);
-    for (size_t i = 0; i < count && result == ABBE_OK; i++)
-      result = run_batch(&to[i], light, &b, error);
-    if (result == ABBE_OK) result = abbe_gpu_tell(gpu, gpu->done, error);
+    for (size_t i = 0; i < count; i++) ABBE_TRY(run_batch(&to[i], light, &b, error));
+    ABBE_TRY(abbe_gpu_tell(gpu, gpu->done, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 abbe_result abbe_beam_list_run(const abbe_beam_use *to, size_t count, abbe_error *error) {

@@ -113,16 +113,14 @@ static bool is_too_wide(const abbe_caustics *c, size_t light, const abbe_view *v
 static abbe_result sort_closer(abbe_caustics *c, size_t light, map_fits *fits, abbe_map_layout *map,
                                abbe_error *error) {
   enum { MOST_TURNS = 3 };
-  abbe_result result = ABBE_OK;
-  for (int turn = 0; turn < MOST_TURNS && result == ABBE_OK && is_too_wide(c, light, &map->view);
-       turn++) {
+  for (int turn = 0; turn < MOST_TURNS && is_too_wide(c, light, &map->view); turn++) {
     if (!(fits->whole->total > 0)) break;
     abbe_map_fit_layout(fits->whole, 0.02, map);
     fits->lit = map->view;
     *fits->whole = (abbe_map_fit){.view = &fits->lit};
-    result = sort_hits(c, light, false, fits, error);
+    ABBE_TRY(sort_hits(c, light, false, fits, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* Where frames follow one another, maps leave a margin for what moves. */
@@ -219,8 +217,8 @@ static abbe_result place_grids(abbe_caustics *c, abbe_error *error) {
     abbe_photon_lights_shift_cells(c->views, light, shift);
   c->placed = c->map->history->frame;
   abbe_photon_lights_upload(c->views);
-  const abbe_result result = abbe_light_layers_run(c->layers, error);
-  return result == ABBE_OK ? use_grids(c, error) : result;
+  ABBE_TRY(abbe_light_layers_run(c->layers, error));
+  return use_grids(c, error);
 }
 
 static abbe_result fit_grids(abbe_caustics *c, abbe_error *error) {
@@ -256,21 +254,20 @@ abbe_result abbe_caustics_make(abbe_photon_lights *views, abbe_light_layers *lay
                                abbe_error *error) {
   abbe_caustics *c = out;
   *c = (abbe_caustics){.views = views, .layers = layers, .atlas = atlas, .map = map};
-  abbe_result result = abbe_photon_start_make(views, layers, variant, &c->start, error);
-  if (result == ABBE_OK) result = abbe_light_fit_run(views, layers, variant, error);
-  if (result == ABBE_OK) result = abbe_gpu_tell(views->scene->gpu, 0, error);
-  if (result == ABBE_OK) result = abbe_light_layers_run(layers, error);
-  if (result == ABBE_OK) result = count_photons(c, error);
-  if (result == ABBE_OK) result = abbe_photon_spectra_make(views->scene, &c->spectra, error);
-  if (result == ABBE_OK) result = abbe_photon_ledger_make(views, &c->ledger, error);
-  if (result == ABBE_OK)
-    result = abbe_trace_pass_make(&c->start, &c->spectra, atlas, &c->ledger, &c->trace, error);
-  if (result == ABBE_OK) abbe_refine_pass_make(&c->trace, &c->refine);
-  if (result == ABBE_OK) result = abbe_receiver_atlas_make(views, variant, atlas, error);
-  if (result == ABBE_OK) result = start_fit(c, error);
-  if (result == ABBE_OK) result = fit_maps(c, variant, error);
-  if (result == ABBE_OK) result = fit_grids(c, error);
-  return result == ABBE_OK ? make_passes(c, variant, error) : result;
+  ABBE_TRY(abbe_photon_start_make(views, layers, variant, &c->start, error));
+  ABBE_TRY(abbe_light_fit_run(views, layers, variant, error));
+  ABBE_TRY(abbe_gpu_tell(views->scene->gpu, 0, error));
+  ABBE_TRY(abbe_light_layers_run(layers, error));
+  ABBE_TRY(count_photons(c, error));
+  ABBE_TRY(abbe_photon_spectra_make(views->scene, &c->spectra, error));
+  ABBE_TRY(abbe_photon_ledger_make(views, &c->ledger, error));
+  ABBE_TRY(abbe_trace_pass_make(&c->start, &c->spectra, atlas, &c->ledger, &c->trace, error));
+  abbe_refine_pass_make(&c->trace, &c->refine);
+  ABBE_TRY(abbe_receiver_atlas_make(views, variant, atlas, error));
+  ABBE_TRY(start_fit(c, error));
+  ABBE_TRY(fit_maps(c, variant, error));
+  ABBE_TRY(fit_grids(c, error));
+  return make_passes(c, variant, error);
 }
 
 void abbe_caustics_free(abbe_caustics *c) {
@@ -297,33 +294,32 @@ static abbe_result deposit(abbe_caustics *c, size_t light, const abbe_hit_batch 
 /* Every photon takes all wavelengths, batch by batch. */
 static abbe_result trace_all(abbe_caustics *c, size_t light, abbe_error *error) {
   const size_t n = plan_of(c)->desc.wavelengths;
-  abbe_result result = ABBE_OK;
   abbe_hit_batch b = {0};
-  for (size_t done = 0; result == ABBE_OK && next_batch(c, &b); done = b.first + b.count) {
+  for (size_t done = 0; next_batch(c, &b); done = b.first + b.count) {
     abbe_trace_pass_batch(&c->trace, light, b.first, b.count, done);
-    result =
-        deposit(c, light, &b, !c->measured[light], (double)(b.first + b.count) / (double)n, error);
+    ABBE_TRY(
+        deposit(c, light, &b, !c->measured[light], (double)(b.first + b.count) / (double)n, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* A coarse set of wavelengths, and all those of the intervals that need them. The coarse set is
  * deposited last, when it is known which of its intervals are refined. */
 static abbe_result trace_refined(abbe_caustics *c, size_t light, abbe_error *error) {
   const bool measures = !c->measured[light];
-  abbe_result result = abbe_refine_pass_list(&c->refine, light, measures, error);
+  ABBE_TRY(abbe_refine_pass_list(&c->refine, light, measures, error));
   const size_t chunks = abbe_refine_pass_chunks(&c->refine, light);
-  for (size_t chunk = 0; result == ABBE_OK && chunk < chunks; chunk++) {
+  for (size_t chunk = 0; chunk < chunks; chunk++) {
     const abbe_hit_batch b = {.set = ABBE_TRACE_REFINED, .count = c->refine.fine_nodes};
     abbe_refine_pass_run(&c->refine, light, chunk);
-    result = deposit(c, light, &b, measures || chunks > 1,
-                     (double)(chunk + 1) / (double)(chunks + 1), error);
+    ABBE_TRY(deposit(c, light, &b, measures || chunks > 1,
+                     (double)(chunk + 1) / (double)(chunks + 1), error));
   }
   const abbe_hit_batch b = {.set = ABBE_TRACE_COARSE,
                             .count = c->spectra.nodes,
                             .interval_first = 1,
                             .interval_end = c->spectra.nodes};
-  return result == ABBE_OK ? deposit(c, light, &b, measures, 1, error) : result;
+  return deposit(c, light, &b, measures, 1, error);
 }
 
 static abbe_result trace_and_deposit(abbe_caustics *c, size_t light, abbe_error *error) {
@@ -433,13 +429,11 @@ abbe_result abbe_caustics_read_hits(abbe_caustics *c, size_t light, size_t first
                                     const double origin[3], float **at, unsigned **path,
                                     unsigned **cell, size_t *count, abbe_error *error) {
   const size_t n = plan_of(c)->desc.wavelengths, most = c->trace.hits.stride;
-  abbe_result result = abbe_light_layers_run(c->layers, error);
-  if (result == ABBE_OK) result = abbe_photon_start_run(&c->start, light, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_light_layers_run(c->layers, error));
+  ABBE_TRY(abbe_photon_start_run(&c->start, light, error));
   *count = c->views->light[light].photon_count;
   abbe_trace_pass_batch(&c->trace, light, first, n - first < most ? n - first : most, n);
-  result = abbe_trace_pass_read(&c->trace, light, first, at, path, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_trace_pass_read(&c->trace, light, first, at, path, error));
   place_hits(c, light, origin, *at, *path);
   return read_cells(c, *count, cell, error);
 }

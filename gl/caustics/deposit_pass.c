@@ -36,11 +36,10 @@ abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refi
   *out = (abbe_deposit_pass){
       .trace = trace, .refine = refine, .map = map, .chunks = 1, .most_splats = MAX_SPLATS};
   if (gpu->software) return ABBE_OK;
-  abbe_result result =
-      abbe_shader_variant_compute(photons, gpu, "photon_deposit.comp", NULL, &out->list, error);
-  if (result == ABBE_OK)
-    result = abbe_shader_variant_compute(scene, gpu, "photon_splat.comp", NULL, &out->add, error);
-  return result == ABBE_OK ? make_room(out, first_room(trace), error) : result;
+  ABBE_TRY(
+      abbe_shader_variant_compute(photons, gpu, "photon_deposit.comp", NULL, &out->list, error));
+  ABBE_TRY(abbe_shader_variant_compute(scene, gpu, "photon_splat.comp", NULL, &out->add, error));
+  return make_room(out, first_room(trace), error);
 }
 
 void abbe_deposit_pass_free(abbe_deposit_pass *pass) {

@@ -33,8 +33,7 @@ static abbe_result make_image(const abbe_render_desc *desc, size_t bands, abbe_i
 static abbe_result read_three(const abbe_caustics *c, size_t light, double unit, double factor,
                               size_t first, abbe_image *out, abbe_error *error) {
   abbe_image map = {0};
-  abbe_result result = abbe_spectral_map_read(c->map, light, unit, &map, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_spectral_map_read(c->map, light, unit, &map, error));
   for (size_t i = 0; i < map.width * map.height; i++)
     for (size_t k = 0; k < 3 && first + k < out->channels; k++)
       out->data[i * out->channels + first + k] = (float)(factor * (double)map.data[3 * i + k]);

@@ -115,10 +115,9 @@ abbe_result abbe_cell_fit_run(abbe_trace_pass *trace, abbe_photon_lights *views,
   const size_t middle = plan->desc.wavelengths / 2;
   float *hit = NULL;
   GLuint *path = NULL;
-  abbe_result result = abbe_photon_start_run(trace->start, light, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_photon_start_run(trace->start, light, error));
   abbe_trace_pass_batch(trace, light, middle, 1, plan->desc.wavelengths);
-  result = abbe_trace_pass_read(trace, light, middle, &hit, &path, error);
+  abbe_result result = abbe_trace_pass_read(trace, light, middle, &hit, &path, error);
   GLuint *photon = read_words(gl, trace->start->photons, ABBE_PHOTON_HEADER,
                               view->photon_count * (ABBE_PHOTON_BYTES / 4));
   GLuint *slot = read_words(gl, trace->start->photon_of_cell, 0, view->cells[0] * view->cells[1]);

@@ -10,19 +10,18 @@
 
 static abbe_result copy(const float *texel, size_t side, const char *const *names, abbe_image *out,
                         abbe_error *error) {
-  abbe_result result = abbe_image_make(side, side, 3, names, out, error);
-  for (size_t y = 0; y < side && result == ABBE_OK; y++)
+  ABBE_TRY(abbe_image_make(side, side, 3, names, out, error));
+  for (size_t y = 0; y < side; y++)
     for (size_t x = 0; x < side; x++)
       for (size_t c = 0; c < 3; c++)
         out->data[(y * side + x) * 3 + c] = texel[((side - 1 - y) * side + x) * 4 + c];
-  return result;
+  return ABBE_OK;
 }
 
 abbe_result abbe_map_picture_flux(const float *texel, size_t side, const abbe_map_layout *layout,
                                   double power, abbe_image *out, abbe_error *error) {
   static const char *const names[] = {"X", "Y", "Z"};
-  abbe_result result = copy(texel, side, names, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(copy(texel, side, names, out, error));
   for (size_t y = 0; y < side; y++) {
     const double height = power * abbe_map_layout_texel_size(layout, 1, side, side - 1 - y);
     for (size_t x = 0; x < side; x++)
@@ -37,9 +36,9 @@ abbe_result abbe_map_picture_flux(const float *texel, size_t side, const abbe_ma
 abbe_result abbe_map_picture_colour(const float *texel, size_t side, abbe_image *out,
                                     abbe_error *error) {
   static const char *const names[] = {"R", "G", "B"};
-  abbe_result result = copy(texel, side, names, out, error);
-  if (result == ABBE_OK) abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_REC709, out->xy);
-  return result;
+  ABBE_TRY(copy(texel, side, names, out, error));
+  abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_REC709, out->xy);
+  return ABBE_OK;
 }
 
 /* Turned a little against the axes, so that four places have four columns and four rows. */
@@ -84,8 +83,9 @@ bool abbe_map_history_layout(const abbe_map_history *h, size_t light, abbe_map_l
   return true;
 }
 
-abbe_result abbe_map_history_make(abbe_map_history *h, abbe_gpu *gpu, size_t side, size_t layers,
-                                  abbe_error *error) {
+/* Makes capacity for maps of so many layers; with another capacity nothing is kept in it. */
+static abbe_result map_history_make(abbe_map_history *h, abbe_gpu *gpu, size_t side, size_t layers,
+                                    abbe_error *error) {
   h->gpu = gpu;
   if (!keeps(h)) return ABBE_OK;
   abbe_result result = abbe_gpu_compute(gpu, "map_history.comp", NULL, &h->program, error);
@@ -133,8 +133,10 @@ static GLuint kept_before(const abbe_map_history *h, size_t age) {
   return h->kept[(h->frame + h->frames - age) % h->frames];
 }
 
-void abbe_map_history_blend(abbe_map_history *h, GLuint map, size_t light, size_t layer,
-                            size_t rows) {
+/* Keeps level 0 of a layer of the map, the light's or its tiles', and puts the mean in its place;
+ * so many rows are used. */
+static void map_history_blend(abbe_map_history *h, GLuint map, size_t light, size_t layer,
+                              size_t rows) {
   static const char *const names[ABBE_RENDER_MAX_HISTORY] = {"kept[0]", "kept[1]", "kept[2]",
                                                              "kept[3]"};
   abbe_map_past *past = &h->light[light];
@@ -188,9 +190,8 @@ static abbe_result make_texture(abbe_spectral_map *map, abbe_error *error) {
   const abbe_gl *gl = scene_of(map)->gpu->gl;
   const bool caustics = scene_of(map)->plan->caustics;
   const size_t side = caustics ? scene_of(map)->plan->desc.map_size : 1;
-  abbe_result result = abbe_gpu_make_levels(scene_of(map)->gpu, GL_RGBA32F, side, map->layers,
-                                            map->views->map_levels, &map->texture, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_make_levels(scene_of(map)->gpu, GL_RGBA32F, side, map->layers,
+                                map->views->map_levels, &map->texture, error));
   for (size_t i = 0; i < map->layers && !caustics; i++)
     gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, (GLint)i, 1, 1, 1, GL_RGBA, GL_FLOAT, black);
   return abbe_gl_check(gl, "the allocation of the map", error);
@@ -204,19 +205,16 @@ abbe_result abbe_spectral_map_make(const abbe_photon_lights *views,
   out->views = views;
   out->atlas = atlas;
   out->layers = abbe_receiver_atlas_layers(atlas);
-  abbe_result result = make_texture(out, error);
-  if (result != ABBE_OK || !views->scene->plan->caustics) return result;
+  ABBE_TRY(make_texture(out, error));
+  if (!views->scene->plan->caustics) return ABBE_OK;
   const size_t texels = (atlas->used ? 2 : 1) * views->map_texels;
-  result = abbe_gpu_make_buffer(gpu, texels * abbe_photon_lights_map_words(views) * 4, NULL,
-                                &out->sums, error);
-  if (result == ABBE_OK && (!gpu->software || atlas->used))
-    result =
-        abbe_shader_variant_compute(variant, gpu, "map_resolve.comp", NULL, &out->resolve, error);
-  if (result == ABBE_OK) result = abbe_gpu_compute(gpu, "map_mip.comp", NULL, &out->mip, error);
-  if (result == ABBE_OK)
-    result = abbe_map_history_make(out->history, gpu, views->scene->plan->desc.map_size,
-                                   out->layers, error);
-  return result;
+  ABBE_TRY(abbe_gpu_make_buffer(gpu, texels * abbe_photon_lights_map_words(views) * 4, NULL,
+                                &out->sums, error));
+  if ((!gpu->software || atlas->used))
+    ABBE_TRY(
+        abbe_shader_variant_compute(variant, gpu, "map_resolve.comp", NULL, &out->resolve, error));
+  ABBE_TRY(abbe_gpu_compute(gpu, "map_mip.comp", NULL, &out->mip, error));
+  return map_history_make(out->history, gpu, views->scene->plan->desc.map_size, out->layers, error);
 }
 
 void abbe_spectral_map_free(abbe_spectral_map *map) {
@@ -352,12 +350,12 @@ abbe_result abbe_spectral_map_resolve(abbe_spectral_map *map, size_t light, abbe
     result = resolve_here(map, light, error);
   else
     resolve_layer(map, light, light, side);
-  abbe_map_history_blend(map->history, map->texture, light, light, side);
+  map_history_blend(map->history, map->texture, light, light, side);
   make_mips(map, light, light, side);
   if (result != ABBE_OK || tiles->count == 0) return result;
   const size_t layer = map->atlas->layer[light];
   resolve_layer(map, light, layer, tiles->rows);
-  abbe_map_history_blend(map->history, map->texture, light, layer, tiles->rows);
+  map_history_blend(map->history, map->texture, light, layer, tiles->rows);
   make_mips(map, light, layer, tiles->rows);
   return ABBE_OK;
 }
@@ -387,7 +385,7 @@ abbe_result abbe_spectral_map_read(const abbe_spectral_map *map, size_t light, d
                                    abbe_image *out, abbe_error *error) {
   const abbe_plan *plan = scene_of(map)->plan;
   const size_t side = plan->desc.map_size, layer = side * side * 4;
-  float *data = malloc(map->layers * layer * sizeof *data);
+  ABBE_FREED float *data = malloc(map->layers * layer * sizeof *data);
   if (data == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
   scene_of(map)->gpu->gl->BindTexture(GL_TEXTURE_2D_ARRAY, map->texture);
   scene_of(map)->gpu->gl->GetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA, GL_FLOAT, data);
@@ -395,9 +393,6 @@ abbe_result abbe_spectral_map_read(const abbe_spectral_map *map, size_t light, d
     if (i == light || plan->light_view[i].light != light) continue;
     for (size_t k = 0; k < layer; k++) data[light * layer + k] += data[i * layer + k];
   }
-  abbe_result result =
-      abbe_map_picture_flux(data + light * layer, side, &map->views->light[light].map,
-                            unit * scene_of(map)->local->light[light].power, out, error);
-  free(data);
-  return result;
+  return abbe_map_picture_flux(data + light * layer, side, &map->views->light[light].map,
+                               unit * scene_of(map)->local->light[light].power, out, error);
 }

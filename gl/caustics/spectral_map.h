@@ -53,9 +53,6 @@ void abbe_map_history_free(abbe_map_history *history);
 
 /* The layout of the light's last map; false: none is kept. */
 bool abbe_map_history_layout(const abbe_map_history *history, size_t light, abbe_map_layout *out);
-/* Makes capacity for maps of so many layers; with another capacity nothing is kept in it. */
-abbe_result abbe_map_history_make(abbe_map_history *history, abbe_gpu *gpu, size_t side,
-                                  size_t layers, abbe_error *error);
 /* How the light's map is laid out now: where that differs, frames before do not count. */
 void abbe_map_history_lay_out(abbe_map_history *history, size_t light,
                               const abbe_map_layout *layout, const abbe_receiver_tiles *tiles);
@@ -63,10 +60,6 @@ void abbe_map_history_lay_out(abbe_map_history *history, size_t light,
 /* By which part of a cell this frame's photons are shifted, where the request shifts them by
  * `own`. */
 void abbe_map_history_shift(const abbe_map_history *history, const double own[2], double out[2]);
-/* Keeps level 0 of a layer of the map, the light's or its tiles', and puts the mean in its place;
- * so many rows are used. */
-void abbe_map_history_blend(abbe_map_history *history, GLuint map, size_t light, size_t layer,
-                            size_t rows);
 /* The frame is whole. */
 void abbe_map_history_next(abbe_map_history *history);
 /* Another frame would be as the last one. */

@@ -14,9 +14,8 @@ abbe_result abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *error) {
   abbe_buffer_memory_begin(&out->memory, gl, out->software);
   gl->GenFramebuffers(1, &out->framebuffer);
   gl->GenVertexArrays(1, &out->empty_array);
-  const abbe_result result =
-      abbe_gpu_compute(out, "list_groups.comp", NULL, &out->list_groups, error);
-  if (result != ABBE_OK || !out->software) return result;
+  ABBE_TRY(abbe_gpu_compute(out, "list_groups.comp", NULL, &out->list_groups, error));
+  if (!out->software) return ABBE_OK;
   return abbe_gpu_compute(out, "sampler_states.comp", NULL, &out->sampler_states, error);
 }
 

@@ -134,10 +134,9 @@ static abbe_result append_definitions(source *s, const char *defines, const sour
     list[count] = read_definition(at);
   }
   want(list, count, files->text, files->text + files->size);
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < count && result == ABBE_OK; i++)
-    if (list[i].wanted) result = append(s, list[i].line, list[i].size, error);
-  return result;
+  for (size_t i = 0; i < count; i++)
+    if (list[i].wanted) ABBE_TRY(append(s, list[i].line, list[i].size, error));
+  return ABBE_OK;
 }
 
 /* The text of one stage, of a file or given. */

@@ -24,20 +24,16 @@ abbe_result abbe_adaptive_pass_make(const abbe_receivers_pass *receivers,
   const size_t *samples = receivers->lighting->camera->receiver_room;
   abbe_gpu *gpu = scene_of(out)->gpu;
   if (!abbe_plan_runs(plan, ABBE_PASS_EYE_ADAPTIVE, 0)) return ABBE_OK;
-  abbe_result result = abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 4 * samples[0] * samples[1],
-                                            NULL, &out->samples, error);
+  ABBE_TRY(abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 4 * samples[0] * samples[1], NULL,
+                                &out->samples, error));
   const bool fewer = plan->desc.receiver_samples < plan->desc.supersample;
   char side[48];
   snprintf(side, sizeof side, "#define PIXEL_SIDE %zu\n",
            !plan->camera_sees_refractor ? 0
            : fewer                      ? plan->desc.supersample
                                         : 1);
-  if (result == ABBE_OK)
-    result = abbe_gpu_compute(gpu, "adaptive_list.comp", side, &out->list, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_shader_variant_compute(variant, gpu, "adaptive.comp", NULL, &out->resample, error);
-  return result;
+  ABBE_TRY(abbe_gpu_compute(gpu, "adaptive_list.comp", side, &out->list, error));
+  return abbe_shader_variant_compute(variant, gpu, "adaptive.comp", NULL, &out->resample, error);
 }
 
 void abbe_adaptive_pass_free(abbe_adaptive_pass *pass) {

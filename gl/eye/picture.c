@@ -36,13 +36,13 @@ abbe_result abbe_picture_make(const abbe_receivers_pass *receivers,
     return refraction->merged != 0
                ? abbe_gpu_compute(gpu, "eye_merge.comp", NULL, &out->program, error)
                : ABBE_OK;
-  abbe_result result = abbe_gpu_make_texture(gpu, GL_RGBA32F, desc->width, desc->height, 0, false,
-                                             &out->pixels, error);
+  ABBE_TRY(abbe_gpu_make_texture(gpu, GL_RGBA32F, desc->width, desc->height, 0, false, &out->pixels,
+                                 error));
   /* Drawn, not computed: a software rasteriser stores pixel by pixel what is no target. */
   const abbe_program_stage stages[] = {
       {GL_VERTEX_SHADER, "screen.vert"},
       {GL_FRAGMENT_SHADER, enlarges(out) ? "eye_enlarge.frag" : "eye_resolve.frag"}};
-  return result == ABBE_OK ? abbe_gpu_program(gpu, stages, 2, "", &out->program, error) : result;
+  return abbe_gpu_program(gpu, stages, 2, "", &out->program, error);
 }
 
 void abbe_picture_free(abbe_picture *picture) {
@@ -81,9 +81,8 @@ abbe_result abbe_picture_run(abbe_picture *picture, abbe_error *error) {
     merge(picture);
     return ABBE_OK;
   }
-  abbe_result result =
-      abbe_gpu_set_target(gpu, &picture->pixels, &flat, 1, 0, desc->width, desc->height, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(
+      abbe_gpu_set_target(gpu, &picture->pixels, &flat, 1, 0, desc->width, desc->height, error));
   gl->Disable(GL_DEPTH_TEST);
   gl->UseProgram(program);
   abbe_gpu_bind_array(gpu, program, "receivers", 0, picture->receivers->colour);
@@ -215,9 +214,7 @@ abbe_result abbe_picture_read(const abbe_picture *picture, bool aovs, double uni
   const size_t *room = picture->receivers->lighting->camera->receiver_room;
   size_t size[2];
   abbe_picture_size(picture, size);
-  abbe_result result =
-      abbe_image_make(size[0], size[1], aovs ? 10 : 3, as_xyz ? xyz : rgb, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_image_make(size[0], size[1], aovs ? 10 : 3, as_xyz ? xyz : rgb, out, error));
   const size_t pixels = out->width * out->height, texels = room[0] * room[1];
   float *data = malloc((pixels > texels ? pixels : texels) * 4 * sizeof *data);
   if (data == NULL) {

@@ -202,21 +202,18 @@ abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error
   static const int flat[3] = {0, -1, -1};
   static const GLfloat nothing[4] = {0, 0, 0, 0};
   abbe_gpu_start_lap(scene->gpu);
-  abbe_result result = abbe_gpu_set_target(scene->gpu, target, flat, scene->plan->desc.aovs ? 3 : 1,
-                                           pass->depth, w, h, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gpu_set_target(scene->gpu, target, flat, scene->plan->desc.aovs ? 3 : 1,
+                               pass->depth, w, h, error));
   const bool behind_seen = !scene->local->transparent;
   const GLfloat b = behind_seen ? (GLfloat)scene->local->background : 0;
   const GLfloat background[4] = {b, b, b, 0};
   gl->ClearBufferfv(GL_COLOR, 0, background);
   for (GLint k = 1; k < 3 && scene->plan->desc.aovs; k++) gl->ClearBufferfv(GL_COLOR, k, nothing);
   if (pass->surroundings != 0 && behind_seen) {
-    result = abbe_gpu_set_target(scene->gpu, target, flat, 1, 0, w, h, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_gpu_set_target(scene->gpu, target, flat, 1, 0, w, h, error));
     draw_surroundings(pass);
-    result = abbe_gpu_set_target(scene->gpu, target, flat, scene->plan->desc.aovs ? 3 : 1,
-                                 pass->depth, w, h, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_gpu_set_target(scene->gpu, target, flat, scene->plan->desc.aovs ? 3 : 1,
+                                 pass->depth, w, h, error));
   }
   if (pass->rays != 0) {
     follow_rays(pass);
@@ -242,16 +239,13 @@ static abbe_result make_targets(abbe_receivers_pass *pass, abbe_error *error) {
                           "%zu x %zu pixels with %zu samples a side are %zu x %zu; this OpenGL "
                           "draws at most %d a side: use fewer samples or a smaller picture",
                           desc->width, desc->height, desc->supersample, w, h, most);
-  abbe_result result =
-      abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, w, h, 1, false, &pass->colour, error);
-  if (result == ABBE_OK && desc->aovs)
-    result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, w, h, 0, false, &pass->direct, error);
-  if (result == ABBE_OK && desc->aovs)
-    result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, w, h, 0, false, &pass->caustic, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_texture(scene->gpu, GL_DEPTH_COMPONENT32F, w, h, 0, false, &pass->depth,
-                                   error);
-  return result;
+  ABBE_TRY(abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, w, h, 1, false, &pass->colour, error));
+  if (desc->aovs)
+    ABBE_TRY(abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, w, h, 0, false, &pass->direct, error));
+  if (desc->aovs)
+    ABBE_TRY(abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, w, h, 0, false, &pass->caustic, error));
+  return abbe_gpu_make_texture(scene->gpu, GL_DEPTH_COMPONENT32F, w, h, 0, false, &pass->depth,
+                               error);
 }
 
 /* Rays pay in a picture of what moves, where triangles are so many that to draw them takes

@@ -132,16 +132,15 @@ static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_v
   if (is_coarse(pass)) snprintf(facts, sizeof facts, "%s#define COARSE_EYE\n", shown);
   snprintf(refined, sizeof refined, "%s#define REFINED\n", shares);
   camera.pixel_threads = pass->pixel_threads;
-  abbe_result result = ABBE_OK;
   if (!pass->here)
-    result =
-        abbe_shader_variant_compute(&camera, gpu, "refraction.comp", facts, &pass->refract, error);
-  if (result == ABBE_OK && refines(pass))
-    result = abbe_shader_variant_compute(&camera, gpu, "refraction.comp", refined,
-                                         &pass->refract_refined, error);
-  if (result == ABBE_OK && (pass->keeps || pass->here))
-    result = abbe_shader_variant_compute(&camera, gpu, "sights.comp", NULL, &pass->look_up, error);
-  return result == ABBE_OK ? make_list(pass, variant, error) : result;
+    ABBE_TRY(
+        abbe_shader_variant_compute(&camera, gpu, "refraction.comp", facts, &pass->refract, error));
+  if (refines(pass))
+    ABBE_TRY(abbe_shader_variant_compute(&camera, gpu, "refraction.comp", refined,
+                                         &pass->refract_refined, error));
+  if ((pass->keeps || pass->here))
+    ABBE_TRY(abbe_shader_variant_compute(&camera, gpu, "sights.comp", NULL, &pass->look_up, error));
+  return make_list(pass, variant, error);
 }
 
 static abbe_result make_targets(abbe_refraction_pass *pass, abbe_error *error) {
@@ -149,29 +148,23 @@ static abbe_result make_targets(abbe_refraction_pass *pass, abbe_error *error) {
   const abbe_plan *plan = scene_of(pass)->plan;
   const size_t w = pass->lighting->camera->room[0], h = pass->lighting->camera->room[1];
   const size_t room = w * h < REFINE_ROOM ? w * h : REFINE_ROOM;
-  abbe_result result = ABBE_OK;
   if (resolves(pass))
-    result = abbe_gpu_make_texture(gpu, GL_RGBA32F, w, h, 0, false, &pass->colour, error);
-  if (result != ABBE_OK || !plan->camera_sees_refractor) return result;
+    ABBE_TRY(abbe_gpu_make_texture(gpu, GL_RGBA32F, w, h, 0, false, &pass->colour, error));
+  if (!plan->camera_sees_refractor) return ABBE_OK;
   if (!resolves(pass) && shows_receivers(pass))
-    result = abbe_gpu_make_texture(gpu, GL_RGBA32F, w, h, 1, false, &pass->shown, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_texture(gpu, GL_RGBA32F, w, h, plan->draw_back ? 2 : 1, false,
-                                   &pass->layers, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_texture(gpu, GL_R16UI, w, h, 0, false, &pass->owner, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_texture(gpu, GL_DEPTH_COMPONENT32F, w, h, 0, false, &pass->depth, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 4 * w * h, NULL, &pass->pixels, error);
-  if (result == ABBE_OK && pixel_side(pass) > 1)
-    result =
-        abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 4 * w * h, NULL, &pass->merged, error);
-  if (result == ABBE_OK && refines(pass))
-    result = abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 8 * room, NULL, &pass->refined_pixels,
-                                  error);
-  return result;
+    ABBE_TRY(abbe_gpu_make_texture(gpu, GL_RGBA32F, w, h, 1, false, &pass->shown, error));
+  ABBE_TRY(abbe_gpu_make_texture(gpu, GL_RGBA32F, w, h, plan->draw_back ? 2 : 1, false,
+                                 &pass->layers, error));
+  ABBE_TRY(abbe_gpu_make_texture(gpu, GL_R16UI, w, h, 0, false, &pass->owner, error));
+  ABBE_TRY(abbe_gpu_make_texture(gpu, GL_DEPTH_COMPONENT32F, w, h, 0, false, &pass->depth, error));
+  ABBE_TRY(abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 4 * w * h, NULL, &pass->pixels, error));
+  if (pixel_side(pass) > 1)
+    ABBE_TRY(
+        abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 4 * w * h, NULL, &pass->merged, error));
+  if (refines(pass))
+    ABBE_TRY(abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 8 * room, NULL, &pass->refined_pixels,
+                                  error));
+  return ABBE_OK;
 }
 
 static void take_kept(abbe_refraction_pass *pass, abbe_refraction_kept *kept) {
@@ -229,10 +222,9 @@ abbe_result abbe_refraction_pass_make(const abbe_lighting *lighting,
   if (out->here) out->pixel_threads = 1;
   out->eye_bands = variant->eye_bands;
   take_kept(out, kept);
-  abbe_result result = out->whole ? ABBE_OK : make_targets(out, error);
-  if (result == ABBE_OK && lighting->scene->plan->camera_sees_refractor)
-    result = make_programs(out, variant, error);
-  return result;
+  ABBE_TRY(out->whole ? ABBE_OK : make_targets(out, error));
+  if (lighting->scene->plan->camera_sees_refractor) ABBE_TRY(make_programs(out, variant, error));
+  return ABBE_OK;
 }
 
 void abbe_refraction_pass_free(abbe_refraction_pass *pass) {
@@ -354,10 +346,10 @@ static abbe_result clear_colour(abbe_refraction_pass *pass, abbe_error *error) {
   static const int flat = -1;
   static const GLfloat nothing[4] = {0, 0, 0, 0};
   const size_t *samples = pass->lighting->camera->samples;
-  abbe_result result = abbe_gpu_set_target(scene_of(pass)->gpu, &pass->colour, &flat, 1, 0,
-                                           samples[0], samples[1], error);
-  if (result == ABBE_OK) scene_of(pass)->gpu->gl->ClearBufferfv(GL_COLOR, 0, nothing);
-  return result;
+  ABBE_TRY(abbe_gpu_set_target(scene_of(pass)->gpu, &pass->colour, &flat, 1, 0, samples[0],
+                               samples[1], error));
+  scene_of(pass)->gpu->gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  return ABBE_OK;
 }
 
 static void bind_sights(const abbe_refraction_pass *pass) {
@@ -371,13 +363,12 @@ static abbe_result make_room(abbe_refraction_pass *pass, size_t places, size_t b
                              abbe_error *error) {
   enum { STEP = 1 << 20 };
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  abbe_result result = ABBE_OK;
   if (bytes > pass->sight_bytes) {
     abbe_gpu_drop_buffers(gpu, 1, &pass->sight_pixels);
     pass->sight_bytes = (bytes / STEP + 1) * STEP;
-    result = abbe_gpu_make_buffer(gpu, pass->sight_bytes, NULL, &pass->sight_pixels, error);
+    ABBE_TRY(abbe_gpu_make_buffer(gpu, pass->sight_bytes, NULL, &pass->sight_pixels, error));
   }
-  if (result != ABBE_OK || places <= pass->sight_room) return result;
+  if (places <= pass->sight_room) return ABBE_OK;
   abbe_gpu_drop_buffers(gpu, 1, &pass->sights);
   pass->sight_room = (places / STEP + 1) * STEP;
   if (pass->sight_room > MOST_SIGHTS) pass->sight_room = MOST_SIGHTS;
@@ -392,14 +383,12 @@ static abbe_result find_sights(abbe_refraction_pass *pass, abbe_error *error) {
   const size_t pixels = abbe_gpu_read_count(gpu, pass->pixels);
   size_t places = LIKELY * pixels + 1;
   for (;;) {
-    abbe_result result =
-        make_room(pass, places, 4 * (SIGHT_HEAD + pass->pixel_threads) * (pixels + 1), error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(make_room(pass, places, 4 * (SIGHT_HEAD + pass->pixel_threads) * (pixels + 1), error));
     abbe_gpu_clear_list(gpu, pass->sights);
     use(pass, pass->refract);
     abbe_gpu_set_uint(gpu, pass->refract, "sight_room", pass->sight_room);
     bind_sights(pass);
-    result = refract_pixels(pass, error);
+    abbe_result result = refract_pixels(pass, error);
     gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     if (result != ABBE_OK || gpu->stopped) return result;
     places = abbe_gpu_read_count(gpu, pass->sights);

@@ -173,10 +173,9 @@ abbe_result abbe_light_layers_draw(abbe_light_layers *layers, size_t light, abbe
 
 abbe_result abbe_light_layers_run(abbe_light_layers *layers, abbe_error *error) {
   const abbe_plan *plan = layers->views->scene->plan;
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < plan->light_view_count && result == ABBE_OK; i++)
-    if (plan->reaches[i]) result = abbe_light_layers_draw(layers, i, error);
-  return result;
+  for (size_t i = 0; i < plan->light_view_count; i++)
+    if (plan->reaches[i]) ABBE_TRY(abbe_light_layers_draw(layers, i, error));
+  return ABBE_OK;
 }
 
 void abbe_light_layers_set(const abbe_light_layers *layers, GLuint program) {

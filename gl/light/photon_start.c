@@ -5,17 +5,16 @@
 abbe_result abbe_photon_cells_make(abbe_gpu *gpu, size_t side, abbe_photon_cells *out,
                                    abbe_error *error) {
   out->gpu = gpu;
-  abbe_result result = abbe_gpu_compute(gpu, "photon_place.comp", NULL, &out->place, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_compute(gpu, "photon_groups.comp", NULL, &out->groups, error);
-  for (int level = 0; level < ABBE_CELL_LEVELS && result == ABBE_OK; level++) {
+  ABBE_TRY(abbe_gpu_compute(gpu, "photon_place.comp", NULL, &out->place, error));
+  ABBE_TRY(abbe_gpu_compute(gpu, "photon_groups.comp", NULL, &out->groups, error));
+  for (int level = 0; level < ABBE_CELL_LEVELS; level++) {
     /* The finer level's cells: four for each of this one's, rounded up at the rim. */
     const size_t across = (side >> (ABBE_CELL_LEVELS - 1 - level)) + 2;
     const size_t room = level == ABBE_CELL_LEVELS - 1 ? side * side : 4 * across * across;
-    result =
-        abbe_gpu_make_buffer(gpu, ABBE_PHOTON_HEADER + room * 4, NULL, &out->list[level], error);
+    ABBE_TRY(
+        abbe_gpu_make_buffer(gpu, ABBE_PHOTON_HEADER + room * 4, NULL, &out->list[level], error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 void abbe_photon_cells_free(abbe_photon_cells *cells) {
@@ -117,10 +116,9 @@ size_t abbe_photon_start_count(const abbe_photon_start *start) {
 abbe_result abbe_photon_start_run(abbe_photon_start *start, size_t light, abbe_error *error) {
   abbe_gpu *gpu = start->cells.gpu;
   const GLuint lit = start->cells.list[ABBE_CELL_LEVELS - 1];
-  abbe_result result = abbe_photon_cells_run(&start->cells, start->views->light[light].cells,
-                                             start->layers->layers, 2 * (int)light, error);
-  if (result == ABBE_OK) result = abbe_gpu_tell(gpu, gpu->done, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_photon_cells_run(&start->cells, start->views->light[light].cells,
+                                 start->layers->layers, 2 * (int)light, error));
+  ABBE_TRY(abbe_gpu_tell(gpu, gpu->done, error));
   abbe_gpu_clear_buffer(gpu, start->photon_of_cell);
   clear_header(gpu, start->photons);
   use(start->views, start->layers, start->cover, light);
@@ -130,6 +128,6 @@ abbe_result abbe_photon_start_run(abbe_photon_start *start, size_t light, abbe_e
   const size_t *cells = start->views->light[light].cells;
   abbe_gpu_dispatch_counted(gpu, start->cover, lit, cells[0] * cells[1]);
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-  result = abbe_gl_check(gpu->gl, "the start of photons", error);
-  return result == ABBE_OK ? abbe_gpu_tell(gpu, gpu->done, error) : result;
+  ABBE_TRY(abbe_gl_check(gpu->gl, "the start of photons", error));
+  return abbe_gpu_tell(gpu, gpu->done, error);
 }

@@ -9,10 +9,8 @@ enum { WORDS = 12 };
 abbe_result abbe_photon_ledger_make(const abbe_photon_lights *views, abbe_photon_ledger *out,
                                     abbe_error *error) {
   out->views = views;
-  abbe_result result = abbe_gpu_make_buffer(views->scene->gpu, WORDS * 4, NULL, &out->sums, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_buffer(views->scene->gpu, WORDS * 4, NULL, &out->saved, error);
-  return result;
+  ABBE_TRY(abbe_gpu_make_buffer(views->scene->gpu, WORDS * 4, NULL, &out->sums, error));
+  return abbe_gpu_make_buffer(views->scene->gpu, WORDS * 4, NULL, &out->saved, error);
 }
 
 void abbe_photon_ledger_free(abbe_photon_ledger *ledger) {

@@ -62,12 +62,10 @@ abbe_result abbe_photon_spectra_make(const abbe_gpu_scene *scene, abbe_photon_sp
   const abbe_spectral_tables *t = &scene->tables;
   out->scene = scene;
   out->nodes = t->coarse.count;
-  abbe_result result = abbe_photon_spectra_weigh(out, 0, 0, error);
-  if (result == ABBE_OK) result = upload_tints(out, error);
+  ABBE_TRY(abbe_photon_spectra_weigh(out, 0, 0, error));
+  ABBE_TRY(upload_tints(out, error));
   const size_t size = scene->plan->light_view_count * t->all.count * sizeof *t->sample_weight;
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_buffer(scene->gpu, size, t->sample_weight, &out->sample_weights, error);
-  return result;
+  return abbe_gpu_make_buffer(scene->gpu, size, t->sample_weight, &out->sample_weights, error);
 }
 
 void abbe_photon_spectra_free(abbe_photon_spectra *spectra) {
@@ -78,8 +76,8 @@ void abbe_photon_spectra_free(abbe_photon_spectra *spectra) {
 
 abbe_result abbe_photon_spectra_take_all(abbe_photon_spectra *spectra, abbe_error *error) {
   spectra->nodes = spectra->scene->tables.all.count;
-  abbe_result result = abbe_photon_spectra_weigh(spectra, 0, 0, error);
-  return result == ABBE_OK ? upload_tints(spectra, error) : result;
+  ABBE_TRY(abbe_photon_spectra_weigh(spectra, 0, 0, error));
+  return upload_tints(spectra, error);
 }
 
 size_t abbe_photon_signature_bytes(const abbe_plan *plan) {

@@ -34,10 +34,9 @@ static abbe_result make_list(abbe_gpu *gpu, size_t pairs, GLuint *list, abbe_err
 abbe_result abbe_refine_pass_make_room(abbe_refine_pass *pass, abbe_error *error) {
   abbe_gpu *gpu = pass->trace->spectra->scene->gpu;
   abbe_gpu_drop_buffers(gpu, 1, &pass->wants);
-  abbe_result result =
-      abbe_gpu_make_buffer(gpu, pass->trace->most_photons * 4, NULL, &pass->wants, error);
-  if (result == ABBE_OK) abbe_gpu_clear_buffer(gpu, pass->wants);
-  return result;
+  ABBE_TRY(abbe_gpu_make_buffer(gpu, pass->trace->most_photons * 4, NULL, &pass->wants, error));
+  abbe_gpu_clear_buffer(gpu, pass->wants);
+  return ABBE_OK;
 }
 
 /* For all that a light's photons need. */
@@ -54,12 +53,10 @@ static abbe_result make_pairs(abbe_refine_pass *pass, size_t pairs, abbe_error *
   if (room <= pass->pair_room) return ABBE_OK;
   abbe_hits_free(spectra->scene->gpu, &pass->hits);
   pass->pair_room = room;
-  abbe_result result = make_list(spectra->scene->gpu, room, &pass->pairs, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_hits_make(spectra->scene->gpu, room, spectra->scene->plan->hit_slots, pass->fine_nodes,
-                       abbe_photon_signature_bytes(spectra->scene->plan), &pass->hits, error);
-  return result;
+  ABBE_TRY(make_list(spectra->scene->gpu, room, &pass->pairs, error));
+  return abbe_hits_make(spectra->scene->gpu, room, spectra->scene->plan->hit_slots,
+                        pass->fine_nodes, abbe_photon_signature_bytes(spectra->scene->plan),
+                        &pass->hits, error);
 }
 
 void abbe_refine_pass_free(abbe_refine_pass *pass) {

@@ -81,13 +81,10 @@ abbe_result abbe_hits_make(abbe_gpu *gpu, size_t items, size_t slots, size_t str
   const size_t paths = items * slots;
   out->stride = stride;
   const size_t hits = paths * stride;
-  abbe_result result = abbe_gpu_make_buffer(gpu, hits * ABBE_HIT_BYTES, NULL, &out->hits, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_buffer(gpu, hits * signature_bytes, NULL, &out->signatures, error);
-  if (result == ABBE_OK) result = abbe_gpu_make_buffer(gpu, paths * 4, NULL, &out->marks, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + paths * 4, NULL, &out->paths, error);
-  return result;
+  ABBE_TRY(abbe_gpu_make_buffer(gpu, hits * ABBE_HIT_BYTES, NULL, &out->hits, error));
+  ABBE_TRY(abbe_gpu_make_buffer(gpu, hits * signature_bytes, NULL, &out->signatures, error));
+  ABBE_TRY(abbe_gpu_make_buffer(gpu, paths * 4, NULL, &out->marks, error));
+  return abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + paths * 4, NULL, &out->paths, error);
 }
 
 void abbe_hits_free(abbe_gpu *gpu, abbe_hits *hits) {
@@ -105,13 +102,11 @@ void abbe_trace_pass_free(abbe_trace_pass *pass) {
 abbe_result abbe_trace_pass_compile(abbe_trace_pass *pass, const abbe_shader_variant *variant,
                                     abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  abbe_result result = abbe_shader_variant_compute(variant, gpu, "photon_trace.comp",
-                                                   abbe_shader_variant_waves(scene_of(pass)->plan),
-                                                   &pass->program, error);
-  if (result == ABBE_OK)
-    result = abbe_shader_variant_compute(variant, gpu, "photon_paths.comp", NULL, &pass->list_paths,
-                                         error);
-  return result;
+  ABBE_TRY(abbe_shader_variant_compute(variant, gpu, "photon_trace.comp",
+                                       abbe_shader_variant_waves(scene_of(pass)->plan),
+                                       &pass->program, error));
+  return abbe_shader_variant_compute(variant, gpu, "photon_paths.comp", NULL, &pass->list_paths,
+                                     error);
 }
 
 void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set set,

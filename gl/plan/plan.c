@@ -457,9 +457,7 @@ bool abbe_plan_surrounds(const abbe_scene *scene) {
 abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *desc,
                                const abbe_scene *before, abbe_scene *out, abbe_error *error) {
   abbe_render_desc d;
-  abbe_result result =
-      abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &d, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &d, error));
   /* wand2003 shows all of an environment through its pinholes. */
   const bool cut = scene->environment != NULL && !abbe_method_of(d.profile)->surroundings;
   const size_t others = cut ? d.environment_lights : 0;
@@ -468,7 +466,7 @@ abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *
       abbe_area_lights_add(scene, d.light_points, ABBE_SCENE_MAX_LIGHTS - others, &pointed, error));
   const abbe_environment_lights_desc lights = {
       .count = others, .min_nm = d.min_nm, .max_nm = d.max_nm, .observer = d.observer};
-  result = abbe_environment_lights_add(&pointed, &lights, before, out, error);
+  abbe_result result = abbe_environment_lights_add(&pointed, &lights, before, out, error);
   free(pointed.light);
   return result;
 }

@@ -268,12 +268,11 @@ abbe_result abbe_support_volume(const abbe_scene *scene, const abbe_plan *plan, 
                           "a volume holds the caustics of one object alone, '%s'; this scene has "
                           "%zu that bend light",
                           d->volume->body.name, plan->refractor_count);
-  abbe_result result = abbe_volume_body_find(
-      &d->volume->body, &scene->object[plan->refractor_object[0]], &place, error);
-  for (size_t i = 0; i < scene->light_count && result == ABBE_OK; i++)
+  ABBE_TRY(abbe_volume_body_find(&d->volume->body, &scene->object[plan->refractor_object[0]],
+                                 &place, error));
+  for (size_t i = 0; i < scene->light_count; i++)
     if (d->volume->kind == ABBE_VOLUME_VECTOR)
-      result = check_volume_light(&scene->light[i], d, place.centre, error);
-  if (result == ABBE_OK && d->volume->kind == ABBE_VOLUME_EXITS)
-    result = check_exits_range(d, error);
-  return result;
+      ABBE_TRY(check_volume_light(&scene->light[i], d, place.centre, error));
+  if (d->volume->kind == ABBE_VOLUME_EXITS) ABBE_TRY(check_exits_range(d, error));
+  return ABBE_OK;
 }

@@ -318,36 +318,34 @@ static abbe_result upload(abbe_gpu_scene *scene, const forest *f, abbe_error *er
 
 /* A tree for each mesh that refracts. */
 static abbe_result grow_refractors(abbe_gpu_scene *scene, grove *g, forest *f, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < scene->plan->refractor_count && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < scene->plan->refractor_count; i++) {
     if (scene->plan->model[i] != ABBE_REFRACTOR_BVH) continue;
     g->mesh_count = 0;
     g->films = abbe_film_tables_of(scene->local, scene->plan, i, &g->first_film);
-    result = add_mesh(g, f, &scene->local->object[scene->plan->refractor_object[i]].mesh, 0, NULL,
-                      error);
-    if (result == ABBE_OK) result = grow(scene, g, f, &scene->refractor_root[i], error);
-    if (result == ABBE_OK && scene->gpu->software)
-      result = abbe_ray_trees_add(&scene->trees, (const uint32_t(*)[4])f->texel,
-                                  scene->refractor_root[i], &scene->refractor_tree[i], error);
+    ABBE_TRY(add_mesh(g, f, &scene->local->object[scene->plan->refractor_object[i]].mesh, 0, NULL,
+                      error));
+    ABBE_TRY(grow(scene, g, f, &scene->refractor_root[i], error));
+    if (scene->gpu->software)
+      ABBE_TRY(abbe_ray_trees_add(&scene->trees, (const uint32_t(*)[4])f->texel,
+                                  scene->refractor_root[i], &scene->refractor_tree[i], error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* One tree for all receivers that are traversed. */
 static abbe_result grow_receivers(abbe_gpu_scene *scene, grove *g, forest *f, abbe_error *error) {
-  abbe_result result = ABBE_OK;
   if (scene->plan->receivers != ABBE_RECEIVER_BVH) return ABBE_OK;
   g->mesh_count = 0;
   g->films = NULL;
-  for (size_t i = 0; i < scene->plan->receiver_count && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < scene->plan->receiver_count; i++) {
     const abbe_mesh *mesh = &scene->local->object[scene->plan->receiver_object[i]].mesh;
     const int32_t *side = scene->charts.face_side != NULL
                               ? scene->charts.face_side + scene->charts.face_first[i]
                               : NULL;
     if (scene->plan->receiver_model[i] == ABBE_RECEIVER_BVH)
-      result = add_mesh(g, f, mesh, i, side, error);
+      ABBE_TRY(add_mesh(g, f, mesh, i, side, error));
   }
-  return result == ABBE_OK ? grow(scene, g, f, &scene->receiver_root, error) : result;
+  return grow(scene, g, f, &scene->receiver_root, error);
 }
 
 abbe_result abbe_gpu_bvh_make(abbe_gpu_scene *scene, abbe_error *error) {

@@ -183,23 +183,19 @@ abbe_result abbe_gpu_environment_cube(abbe_gpu *gpu, const abbe_radiance_cube *c
 /* Its texels are the power of two nearest to as wide as the map's. */
 static abbe_result make_cube(abbe_gpu *gpu, const abbe_radiance_map *map, const double matrix[9],
                              GLuint *out, abbe_error *error) {
-  abbe_radiance_cube cube;
+  ABBE_OWNED(abbe_radiance_cube, cube) = {0};
   size_t side = 1;
   while (side < ABBE_RADIANCE_CUBE_MAX_SIDE && 6 * side <= map->width) side *= 2;
   ABBE_TRY(abbe_radiance_cube_make(map, side, &cube, error));
-  abbe_result result = abbe_gpu_environment_cube(gpu, &cube, matrix, out, error);
-  abbe_radiance_cube_free(&cube);
-  return result;
+  return abbe_gpu_environment_cube(gpu, &cube, matrix, out, error);
 }
 
 static abbe_result make_soft_light(abbe_gpu *gpu, const abbe_irradiance_map *map,
                                    const double matrix[9], GLuint *out, abbe_error *error) {
   enum { NODES = ABBE_IRRADIANCE_MAP_ROWS * ABBE_IRRADIANCE_MAP_COLUMNS };
-  float *node = convert(matrix, &map->rgb[0][0][0], NODES, error);
+  ABBE_FREED float *node = convert(matrix, &map->rgb[0][0][0], NODES, error);
   if (node == NULL) return ABBE_NO_MEMORY;
-  const abbe_result result = abbe_gpu_make_buffer(gpu, NODES * 4 * sizeof *node, node, out, error);
-  free(node);
-  return result;
+  return abbe_gpu_make_buffer(gpu, NODES * 4 * sizeof *node, node, out, error);
 }
 
 abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_scene *scene, abbe_rgb_space space,

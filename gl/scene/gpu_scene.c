@@ -112,7 +112,7 @@ static void store_parallelogram(const double p[9], size_t surface, const double 
 
 static abbe_result upload_receivers(abbe_gpu_scene *scene, abbe_error *error) {
   size_t count = scene->plan->parallelogram_count, next = 0;
-  gpu_receiver *receiver = calloc(count + 1, sizeof *receiver);
+  ABBE_FREED gpu_receiver *receiver = calloc(count + 1, sizeof *receiver);
   if (receiver == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for receivers");
   for (size_t i = 0; i < scene->plan->receiver_count; i++) {
     if (scene->plan->receiver_model[i] != ABBE_RECEIVER_EXACT) continue;
@@ -120,10 +120,8 @@ static abbe_result upload_receivers(abbe_gpu_scene *scene, abbe_error *error) {
     for (size_t k = 0; k < exact->count && next < count; k++)
       store_parallelogram(exact->parallelogram[k], i, scene->refractor_centre, &receiver[next++]);
   }
-  abbe_result result = abbe_gpu_make_buffer(scene->gpu, count * sizeof *receiver, receiver,
-                                            &scene->receivers, error);
-  free(receiver);
-  return result;
+  return abbe_gpu_make_buffer(scene->gpu, count * sizeof *receiver, receiver, &scene->receivers,
+                              error);
 }
 
 static void measure_scene(abbe_gpu_scene *scene) {
@@ -164,29 +162,24 @@ void abbe_gpu_scene_begin(abbe_gpu *gpu, const abbe_scene *local, double unit,
 }
 
 static abbe_result make_geometry(abbe_gpu_scene *scene, abbe_error *error) {
-  abbe_result result = ABBE_OK;
   if (scene->plan->tiles || scene->plan->page_charts)
-    result = abbe_receiver_charts_make(scene->local, scene->plan, &scene->charts, error);
-  if (result == ABBE_OK) result = abbe_gpu_bvh_make(scene, error);
-  if (result == ABBE_OK) result = abbe_gpu_meshes_upload(scene, error);
-  if (result == ABBE_OK) result = upload_refractors(scene, error);
-  return result == ABBE_OK ? upload_receivers(scene, error) : result;
+    ABBE_TRY(abbe_receiver_charts_make(scene->local, scene->plan, &scene->charts, error));
+  ABBE_TRY(abbe_gpu_bvh_make(scene, error));
+  ABBE_TRY(abbe_gpu_meshes_upload(scene, error));
+  ABBE_TRY(upload_refractors(scene, error));
+  return upload_receivers(scene, error);
 }
 
 abbe_result abbe_gpu_scene_make(abbe_gpu_scene *scene, unsigned parts, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  if (parts & ABBE_SCENE_GEOMETRY) result = make_geometry(scene, error);
-  if (result == ABBE_OK) result = abbe_watch_check(error);
-  if (result == ABBE_OK && (parts & ABBE_SCENE_SHADOWS) != 0)
-    result = abbe_gpu_shadows_make(scene, error);
-  if (result == ABBE_OK && (parts & ABBE_SCENE_SURFACES) != 0)
-    result = abbe_gpu_surfaces_upload(scene, error);
-  if (result == ABBE_OK) result = abbe_watch_check(error);
-  if (result == ABBE_OK && (parts & ABBE_SCENE_SPECTRA) != 0)
-    result = abbe_spectral_tables_make(scene->local, scene->plan, &scene->tables, error);
-  if (result == ABBE_OK && (parts & ABBE_SCENE_SPECTRA) != 0)
-    result = abbe_gpu_spectra_upload(scene, error);
-  return result;
+  if (parts & ABBE_SCENE_GEOMETRY) ABBE_TRY(make_geometry(scene, error));
+  ABBE_TRY(abbe_watch_check(error));
+  if ((parts & ABBE_SCENE_SHADOWS) != 0) ABBE_TRY(abbe_gpu_shadows_make(scene, error));
+  if ((parts & ABBE_SCENE_SURFACES) != 0) ABBE_TRY(abbe_gpu_surfaces_upload(scene, error));
+  ABBE_TRY(abbe_watch_check(error));
+  if ((parts & ABBE_SCENE_SPECTRA) != 0)
+    ABBE_TRY(abbe_spectral_tables_make(scene->local, scene->plan, &scene->tables, error));
+  if ((parts & ABBE_SCENE_SPECTRA) != 0) ABBE_TRY(abbe_gpu_spectra_upload(scene, error));
+  return ABBE_OK;
 }
 
 static void free_geometry(abbe_gpu_scene *scene) {

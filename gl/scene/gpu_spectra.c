@@ -85,7 +85,7 @@ static abbe_result upload_films(abbe_gpu_scene *scene, abbe_error *error) {
 }
 
 abbe_result abbe_gpu_spectra_upload(abbe_gpu_scene *scene, abbe_error *error) {
-  abbe_result result = upload_spectra(scene, error);
-  if (result == ABBE_OK) result = upload_bands(scene, error);
-  return result == ABBE_OK ? upload_films(scene, error) : result;
+  ABBE_TRY(upload_spectra(scene, error));
+  ABBE_TRY(upload_bands(scene, error));
+  return upload_films(scene, error);
 }

@@ -135,10 +135,9 @@ static abbe_result upload_textures(abbe_gpu_scene *scene, gpu_surface *surface, 
     if (t->width > width) width = t->width;
     if (t->height > height) height = t->height;
   }
-  abbe_result result =
-      abbe_gpu_make_texture(scene->gpu, GL_RGBA16F, width, height, layers > 0 ? layers : 1, true,
-                            &scene->surface_texture, error);
-  if (result != ABBE_OK || layers == 0) return result;
+  ABBE_TRY(abbe_gpu_make_texture(scene->gpu, GL_RGBA16F, width, height, layers > 0 ? layers : 1,
+                                 true, &scene->surface_texture, error));
+  if (layers == 0) return ABBE_OK;
   scene->gpu->gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_REPEAT);
   scene->gpu->gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_REPEAT);
   float *texel = malloc(width * height * 4 * sizeof *texel);

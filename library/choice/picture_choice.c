@@ -37,19 +37,17 @@ typedef struct reader {
 
 static abbe_result get_above_0(const reader *r, abbe_yaml_node node, const char *key, double *out) {
   *out = -1;
-  abbe_result result = abbe_yaml_get_number(r->yaml, node, key, 0, 1e9, out, r->error);
-  if (result == ABBE_OK && !(*out > 0))
-    return abbe_yaml_fail(r->yaml, node, r->error, "'%s' is a number above 0", key);
-  return result;
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, node, key, 0, 1e9, out, r->error));
+  if (!(*out > 0)) return abbe_yaml_fail(r->yaml, node, r->error, "'%s' is a number above 0", key);
+  return ABBE_OK;
 }
 
 static abbe_result get_count(const reader *r, abbe_yaml_node node, const char *key, size_t most,
                              size_t *out) {
   *out = 0;
-  abbe_result result = abbe_yaml_get_count(r->yaml, node, key, 1, most, out, r->error);
-  if (result == ABBE_OK && *out == 0)
-    return abbe_yaml_fail(r->yaml, node, r->error, "a point has no '%s'", key);
-  return result;
+  ABBE_TRY(abbe_yaml_get_count(r->yaml, node, key, 1, most, out, r->error));
+  if (*out == 0) return abbe_yaml_fail(r->yaml, node, r->error, "a point has no '%s'", key);
+  return ABBE_OK;
 }
 
 static abbe_result read_render(const reader *r, abbe_yaml_node node, abbe_picture_point *d) {
@@ -77,16 +75,16 @@ static abbe_result read_render(const reader *r, abbe_yaml_node node, abbe_pictur
 static abbe_result read_point(const reader *r, abbe_yaml_node node, abbe_picture_tool tool,
                               abbe_picture_point *out) {
   *out = (abbe_picture_point){.tool = tool};
-  abbe_result result = get_count(r, node, "photons", ABBE_RENDER_MAX_PHOTONS, &out->photons);
-  if (result == ABBE_OK && out->tool == ABBE_PICTURE_RENDER) {
-    result = read_render(r, node, out);
-  } else if (result == ABBE_OK) {
-    result = get_count(r, node, "passes", MOST_PASSES, &out->passes);
+  ABBE_TRY(get_count(r, node, "photons", ABBE_RENDER_MAX_PHOTONS, &out->photons));
+  if (out->tool == ABBE_PICTURE_RENDER) {
+    ABBE_TRY(read_render(r, node, out));
+  } else {
+    ABBE_TRY(get_count(r, node, "passes", MOST_PASSES, &out->passes));
   }
-  if (result == ABBE_OK) result = get_above_0(r, node, "ms", &out->ms);
-  if (result == ABBE_OK) result = get_above_0(r, node, "error", &out->worst);
-  if (result == ABBE_OK) result = get_above_0(r, node, "least", &out->least);
-  return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, node, "point", r->error) : result;
+  ABBE_TRY(get_above_0(r, node, "ms", &out->ms));
+  ABBE_TRY(get_above_0(r, node, "error", &out->worst));
+  ABBE_TRY(get_above_0(r, node, "least", &out->least));
+  return abbe_yaml_check_keys(r->yaml, node, "point", r->error);
 }
 
 static abbe_result read_points(const reader *r, abbe_yaml_node list, abbe_picture_tool tool,

@@ -275,7 +275,7 @@ static abbe_result read_coating(reading *r, const char *text, const char *name, 
 abbe_result abbe_coating_dat_read(const char *path, const char *name, double primary_nm,
                                   const abbe_material_table *table, abbe_coating *out,
                                   abbe_error *error) {
-  char *text = NULL;
+  ABBE_FREED char *text = NULL;
   size_t size = 0;
   const char *ending = strrchr(path, '.');
   if (ending != NULL && strcasecmp(ending, ".zec") == 0)
@@ -290,7 +290,5 @@ abbe_result abbe_coating_dat_read(const char *path, const char *name, double pri
                           path);
   ABBE_TRY(abbe_file_read_text(path, MOST_BYTES, &text, &size, error));
   reading r = {.path = path, .error = error};
-  abbe_result result = read_coating(&r, text, name, primary_nm, table, out);
-  free(text);
-  return result;
+  return read_coating(&r, text, name, primary_nm, table, out);
 }

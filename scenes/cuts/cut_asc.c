@@ -97,13 +97,11 @@ static abbe_result want(const reading *r, char **at, const char *what, double *o
 
 static abbe_result read_gear(reading *r, char *at, abbe_error *error) {
   double teeth, offset = 0;
-  abbe_result result = want(r, &at, "the number of the gear's teeth", &teeth, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(want(r, &at, "the number of the gear's teeth", &teeth, error));
   if (teeth == 0 || teeth != round(teeth) || fabs(teeth) > ABBE_CUT_MAX_GEAR)
     return FAIL(r, ABBE_SCHEMA, "a gear has 1 to %d teeth (below 0 where it is reversed), not %g",
                 ABBE_CUT_MAX_GEAR, teeth);
-  if (*skip_blanks(at) != '\0') result = want(r, &at, "the gear's offset", &offset, error);
-  if (result != ABBE_OK) return result;
+  if (*skip_blanks(at) != '\0') ABBE_TRY(want(r, &at, "the gear's offset", &offset, error));
   if (fabs(offset) > MOST_INDEX)
     return FAIL(r, ABBE_SCHEMA, "the gear's offset %g is not an index", offset);
   if (r->geared) NOTE(r, ABBE_NOTE_CHANGED, "the gear is said again; the last one holds");
@@ -196,22 +194,21 @@ static abbe_result read_instruction(reading *r, char *at, abbe_error *error) {
 
 /* Indices, names and the instruction, on the tier's line or one that goes on with it. */
 static abbe_result read_words(reading *r, char *at, abbe_error *error) {
-  abbe_result result = ABBE_OK;
   const char *word;
   double index;
-  while (result == ABBE_OK && (word = next_word(&at)) != NULL) {
+  while ((word = next_word(&at)) != NULL) {
     if (strcmp(word, "G") == 0) return read_instruction(r, at, error);
     if (strcmp(word, "n") == 0)
-      result = read_name(r, &at, error);
+      ABBE_TRY(read_name(r, &at, error));
     else if (is_number(word, &index))
-      result = add_index(r, index, error);
+      ABBE_TRY(add_index(r, index, error));
     else if (is_no_number(word) || begins_number(word))
-      result = FAIL(r, ABBE_SCHEMA,
-                    "'%.40s' is no index of a gear, which is a number such as 3 or 3.5", word);
+      ABBE_TRY(FAIL(r, ABBE_SCHEMA,
+                    "'%.40s' is no index of a gear, which is a number such as 3 or 3.5", word));
     else
       NOTE(r, ABBE_NOTE_SKIPPED, "'%.40s' is neither an index nor a name behind 'n'", word);
   }
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result read_tier(reading *r, char *at, abbe_error *error) {
@@ -255,8 +252,7 @@ static abbe_result read_line(reading *r, char *line, abbe_error *error) {
   const bool number = abbe_number_read(at, &end, &ignored);
   if (r->open && (number || is_no_number(at) || is_word(at, 'n') || is_word(at, 'G')))
     return read_words(r, at, error);
-  abbe_result result = end_tier(r, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(end_tier(r, error));
   if (is_keyword(at, 'a')) return read_tier(r, at + 1, error);
   if (is_keyword(at, 'g')) return read_gear(r, at + 1, error);
   if (is_keyword(at, 'I')) return read_refraction(r, at + 1, error);
@@ -264,12 +260,12 @@ static abbe_result read_line(reading *r, char *line, abbe_error *error) {
   if (is_keyword(at, 'y'))
     read_folds(r, at + 1);
   else if (*at == 'H')
-    result = read_text(r, at + 1, r->cut->heading, "heading", error);
+    ABBE_TRY(read_text(r, at + 1, r->cut->heading, "heading", error));
   else if (*at == 'F')
-    result = read_text(r, at + 1, r->cut->footnote, "footnote", error);
+    ABBE_TRY(read_text(r, at + 1, r->cut->footnote, "footnote", error));
   else
     NOTE(r, ABBE_NOTE_SKIPPED, "a line that says nothing of a design: '%.80s'", at);
-  return result;
+  return ABBE_OK;
 }
 
 /* The sign for minus, as typesetters have it, becomes a hyphen. */

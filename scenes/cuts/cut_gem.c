@@ -50,12 +50,12 @@ static abbe_result need(const reading *r, size_t bytes, const char *what, abbe_e
 
 static abbe_result take_doubles(reading *r, double *out, size_t count, const char *what,
                                 abbe_error *error) {
-  const abbe_result result = need(r, 8 * count, what, error);
-  for (size_t i = 0; i < count && result == ABBE_OK; i++, r->at += 8) {
+  ABBE_TRY(need(r, 8 * count, what, error));
+  for (size_t i = 0; i < count; i++, r->at += 8) {
     const uint64_t bits = bits_at(r->data + r->at, 8);
     memcpy(&out[i], &bits, sizeof bits);
   }
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result take_whole(reading *r, int32_t *out, const char *what, abbe_error *error) {
@@ -94,8 +94,7 @@ static abbe_result skip_polygon(reading *r, abbe_error *error) {
                   "a facet's corners are each announced by 1 and ended by 0, not %d; this is no "
                   ".gem design",
                   (int)more);
-    result = take_doubles(r, vertex, 3, "a facet's corner", error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(take_doubles(r, vertex, 3, "a facet's corner", error));
   }
 }
 
@@ -114,11 +113,10 @@ static abbe_result take_words(reading *r, const char *text, size_t length, abbe_
   char **instruction = &r->cut->tier[facet->tier].instruction;
   const char *tab = memchr(text, '\t', length);
   const size_t name = tab ? (size_t)(tab - text) : length;
-  abbe_result result = ABBE_OK;
-  if (name > 0) result = keep(text, name, &facet->name, error);
-  if (result == ABBE_OK && tab && name + 1 < length && !*instruction)
-    result = keep(tab + 1, length - name - 1, instruction, error);
-  return result;
+  if (name > 0) ABBE_TRY(keep(text, name, &facet->name, error));
+  if (tab && name + 1 < length && !*instruction)
+    ABBE_TRY(keep(tab + 1, length - name - 1, instruction, error));
+  return ABBE_OK;
 }
 
 static abbe_result take_facet(reading *r, size_t at, const double p[3], abbe_error *error) {
@@ -165,31 +163,29 @@ static abbe_result take_facets(reading *r, abbe_error *error) {
 }
 
 static abbe_result take_lines(reading *r, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < 2 * ABBE_CUT_LINES && result == ABBE_OK; i++) {
+  for (int i = 0; i < 2 * ABBE_CUT_LINES; i++) {
     const char *text = NULL;
     size_t length = 0;
     char **line = i < ABBE_CUT_LINES ? &r->cut->heading[i] : &r->cut->footnote[i - ABBE_CUT_LINES];
-    result = take_text(r, &text, &length, "its headings and footnotes", error);
-    if (result == ABBE_OK && length > 0) result = keep(text, length, line, error);
+    ABBE_TRY(take_text(r, &text, &length, "its headings and footnotes", error));
+    if (length > 0) ABBE_TRY(keep(text, length, line, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result take_trailer(reading *r, abbe_error *error) {
   const char *const what = "what follows the facets";
   abbe_cut *cut = r->cut;
   int32_t folds, mirror, gear, mark;
-  abbe_result result = take_whole(r, &folds, what, error);
-  if (result == ABBE_OK) result = take_whole(r, &mirror, what, error);
+  ABBE_TRY(take_whole(r, &folds, what, error));
+  ABBE_TRY(take_whole(r, &mirror, what, error));
   const size_t gear_at = r->at;
-  if (result == ABBE_OK) result = take_whole(r, &gear, what, error);
-  if (result == ABBE_OK) result = take_doubles(r, &cut->refractive_index, 1, what, error);
-  if (result == ABBE_OK) result = take_whole(r, &mark, what, error);
+  ABBE_TRY(take_whole(r, &gear, what, error));
+  ABBE_TRY(take_doubles(r, &cut->refractive_index, 1, what, error));
+  ABBE_TRY(take_whole(r, &mark, what, error));
   const size_t offset_at = r->at;
-  if (result == ABBE_OK) result = take_doubles(r, &cut->offset, 1, what, error);
-  if (result == ABBE_OK) result = take_lines(r, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(take_doubles(r, &cut->offset, 1, what, error));
+  ABBE_TRY(take_lines(r, error));
   if (gear == 0 || gear > ABBE_CUT_MAX_GEAR || gear < -ABBE_CUT_MAX_GEAR)
     return fail(r, gear_at, ABBE_SCHEMA, error,
                 "a gear has 1 to %d teeth (below 0 where it is reversed), not %d",

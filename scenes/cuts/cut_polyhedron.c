@@ -272,13 +272,14 @@ static double area_of(const abbe_cut_polyhedron *p, const double n[3], const pla
 }
 
 static abbe_result make_faces(const work *w, abbe_cut_polyhedron *out, abbe_error *error) {
-  placed *at = malloc((w->meets + 1) * sizeof *at);
-  size_t *seen = malloc((out->vertex_count + 1) * sizeof *seen); /* by which plane, last */
+  ABBE_FREED placed *at = malloc((w->meets + 1) * sizeof *at);
+  ABBE_FREED size_t *seen =
+      malloc((out->vertex_count + 1) * sizeof *seen); /* by which plane, last */
   out->face = malloc((w->planes + 1) * sizeof *out->face);
   out->corner = malloc((w->listed + 1) * sizeof *out->corner);
-  abbe_result result = at && seen && out->face && out->corner ? ABBE_OK : no_memory(error);
-  for (size_t v = 0; v < out->vertex_count && result == ABBE_OK; v++) seen[v] = SIZE_MAX;
-  for (size_t i = 0; i < w->planes && result == ABBE_OK; i++) {
+  ABBE_TRY(at && seen && out->face && out->corner ? ABBE_OK : no_memory(error));
+  for (size_t v = 0; v < out->vertex_count; v++) seen[v] = SIZE_MAX;
+  for (size_t i = 0; i < w->planes; i++) {
     const abbe_cut_facet *f = &w->cut->facet[w->facet[i]];
     size_t count = 0;
     for (size_t m = 0; m < w->meets; m++)
@@ -299,9 +300,7 @@ static abbe_result make_faces(const work *w, abbe_cut_polyhedron *out, abbe_erro
     out->area += face->area;
     out->volume += face->area * f->d / 3;
   }
-  free(at);
-  free(seen);
-  return result;
+  return ABBE_OK;
 }
 
 /* ---- edges ---- */
@@ -382,9 +381,8 @@ abbe_result abbe_cut_polyhedron_mesh(const abbe_cut *cut, const abbe_cut_polyhed
                                      double scale, abbe_mesh *out, abbe_error *error) {
   memset(out, 0, sizeof *out);
   const size_t triangles = p->corner_count - 2 * p->face_count;
-  const abbe_result result = abbe_mesh_make(p->corner_count, triangles, false, out, error);
+  ABBE_TRY(abbe_mesh_make(p->corner_count, triangles, false, out, error));
   size_t triangle = 0;
-  if (result != ABBE_OK) return result;
   for (size_t f = 0; f < p->face_count; f++) {
     const abbe_cut_face *face = &p->face[f];
     for (size_t k = 0; k < face->count; k++) {

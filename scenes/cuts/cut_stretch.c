@@ -187,11 +187,9 @@ static abbe_result factor_of(const abbe_cut *cut, const abbe_cut_polyhedron *p, 
 abbe_result abbe_cut_stretch_to(abbe_cut *cut, const abbe_cut_polyhedron *p, double crown_deg,
                                 double pavilion_deg, abbe_error *error) {
   double crown, pavilion;
-  abbe_result result = factor_of(cut, p, ABBE_CUT_CROWN, crown_deg, &crown, error);
-  if (result == ABBE_OK)
-    result = factor_of(cut, p, ABBE_CUT_PAVILION, pavilion_deg, &pavilion, error);
-  if (result == ABBE_OK && (crown_deg == 0) != (pavilion_deg == 0) &&
-      abbe_cut_stretch_bound(cut, p))
+  ABBE_TRY(factor_of(cut, p, ABBE_CUT_CROWN, crown_deg, &crown, error));
+  ABBE_TRY(factor_of(cut, p, ABBE_CUT_PAVILION, pavilion_deg, &pavilion, error));
+  if ((crown_deg == 0) != (pavilion_deg == 0) && abbe_cut_stretch_bound(cut, p))
     crown = pavilion = crown_deg == 0 ? pavilion : crown;
-  return result == ABBE_OK ? abbe_cut_stretch_apply(cut, p, crown, pavilion, error) : result;
+  return abbe_cut_stretch_apply(cut, p, crown, pavilion, error);
 }

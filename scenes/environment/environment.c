@@ -117,7 +117,7 @@ static abbe_result check_texels(const abbe_radiance_map *map, abbe_error *error)
 static abbe_result make_table(const abbe_radiance_map *map, double *total, abbe_alias_table *out,
                               abbe_error *error) {
   const size_t count = map->width * map->height;
-  double *weight = malloc(count * sizeof *weight);
+  ABBE_FREED double *weight = malloc(count * sizeof *weight);
   if (weight == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu texels' weights", count);
   *total = 0;
@@ -132,14 +132,11 @@ static abbe_result make_table(const abbe_radiance_map *map, double *total, abbe_
     }
     *total += sum;
   }
-  const abbe_result result =
-      *total > 1e-30
-          ? abbe_alias_table_make(weight, count, out, error)
-          : abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                           "the surroundings are black everywhere; leave them out, or give them "
-                           "some light");
-  free(weight);
-  return result;
+  return *total > 1e-30
+             ? abbe_alias_table_make(weight, count, out, error)
+             : abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                              "the surroundings are black everywhere; leave them out, or give them "
+                              "some light");
 }
 
 abbe_result abbe_environment_prepare(abbe_environment *environment, abbe_error *error) {

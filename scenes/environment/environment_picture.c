@@ -197,11 +197,11 @@ static abbe_result from_cube(const abbe_image *image, abbe_radiance_map *out, ab
   const size_t side = image->width / faces_across[arrangement_of(image)];
   const size_t width =
       4 * side < ABBE_RADIANCE_MAP_MAX_WIDTH ? 4 * side : ABBE_RADIANCE_MAP_MAX_WIDTH;
-  const abbe_result result = abbe_radiance_map_make(width, out, error);
-  for (size_t row = 0; result == ABBE_OK && row < out->height; row++)
+  ABBE_TRY(abbe_radiance_map_make(width, out, error));
+  for (size_t row = 0; row < out->height; row++)
     for (size_t column = 0; column < width; column++)
       cube_texel(image, out, column, row, out->rgb + 3 * (row * width + column));
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result from_latlong(const abbe_image *image, abbe_radiance_map *out,
@@ -214,19 +214,15 @@ static abbe_result from_latlong(const abbe_image *image, abbe_radiance_map *out,
 abbe_result abbe_environment_picture_read(const char *path, abbe_environment_layout layout,
                                           abbe_radiance_map *out, abbe_error *error) {
   *out = (abbe_radiance_map){0};
-  abbe_image image = {0};
+  ABBE_OWNED(abbe_image, image) = {0};
   bool is_exr = false;
-  abbe_result result = read_image(path, &image, &is_exr, error);
-  if (result == ABBE_OK) result = check_layout(path, &image, &layout, error);
+  ABBE_TRY(read_image(path, &image, &is_exr, error));
+  ABBE_TRY(check_layout(path, &image, &layout, error));
   bool assumed = false;
-  if (result == ABBE_OK) result = convert(path, &image, &assumed, error);
-  if (result == ABBE_OK)
-    result = layout == ABBE_LAYOUT_CUBE ? from_cube(&image, out, error)
-                                        : from_latlong(&image, out, error);
-  if (result == ABBE_OK) {
-    out->space_assumed = assumed && is_exr;
-    memcpy(out->part, image.part, sizeof out->part);
-  }
-  abbe_image_free(&image);
-  return result;
+  ABBE_TRY(convert(path, &image, &assumed, error));
+  ABBE_TRY(layout == ABBE_LAYOUT_CUBE ? from_cube(&image, out, error)
+                                      : from_latlong(&image, out, error));
+  out->space_assumed = assumed && is_exr;
+  memcpy(out->part, image.part, sizeof out->part);
+  return ABBE_OK;
 }

@@ -252,7 +252,6 @@ static abbe_result write_object(const abbe_export_writing *w, size_t i, abbe_err
 }
 
 abbe_result abbe_export_pbrt(const abbe_export_writing *w, abbe_error *error) {
-  abbe_result result = ABBE_OK;
   abbe_export_comment(w, "# ", "\n");
   fprintf(w->file,
           "# pbrt %s.pbrt: the picture is radiance in linear Rec.709, in W/(m2 sr) of white.\n"
@@ -261,10 +260,9 @@ abbe_result abbe_export_pbrt(const abbe_export_writing *w, abbe_error *error) {
           w->files->name);
   write_camera(w);
   for (size_t i = 0; i < w->report->glass_count; i++) write_glass(w, i);
-  for (size_t i = 0; i < w->scene->light_count && result == ABBE_OK; i++)
-    result = write_light(w, &w->scene->light[i], error);
-  if (result == ABBE_OK && w->scene->environment != NULL) result = write_environment(w, error);
-  for (size_t i = 0; i < w->scene->object_count && result == ABBE_OK; i++)
-    result = write_object(w, i, error);
-  return result;
+  for (size_t i = 0; i < w->scene->light_count; i++)
+    ABBE_TRY(write_light(w, &w->scene->light[i], error));
+  if (w->scene->environment != NULL) ABBE_TRY(write_environment(w, error));
+  for (size_t i = 0; i < w->scene->object_count; i++) ABBE_TRY(write_object(w, i, error));
+  return ABBE_OK;
 }

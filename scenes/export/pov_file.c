@@ -298,18 +298,17 @@ static abbe_result write_receiver(const writing *w, const abbe_object *object, a
 }
 
 static abbe_result write_scene(const writing *w, abbe_error *error) {
-  abbe_result result = ABBE_OK;
   write_head(w);
   write_camera(w);
   for (size_t i = 0; i < w->scene->light_count; i++) write_light(w, &w->scene->light[i]);
-  for (size_t i = 0; i < w->scene->object_count && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < w->scene->object_count; i++) {
     const abbe_object *object = &w->scene->object[i];
     if (object->cloud) continue;
-    result = abbe_object_kind_of(object) == ABBE_OBJECT_REFRACTOR
+    ABBE_TRY(abbe_object_kind_of(object) == ABBE_OBJECT_REFRACTOR
                  ? write_refractor(w, object, error)
-                 : write_receiver(w, object, error);
+                 : write_receiver(w, object, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result check_options(const abbe_pov_options *o, abbe_error *error) {

@@ -137,10 +137,8 @@ static abbe_result export_survey(const abbe_scene *scene, abbe_scene_export_targ
                                  abbe_scene_export_report *report, abbe_error *error) {
   const bool spectral = target == ABBE_SCENE_EXPORT_PBRT;
   const survey s = {scene, target, spectral, spectral, report};
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++)
-    result = survey_object(&s, &scene->object[i], error);
-  if (result != ABBE_OK) return result;
+  for (size_t i = 0; i < scene->object_count; i++)
+    ABBE_TRY(survey_object(&s, &scene->object[i], error));
   for (size_t i = 0; i < scene->light_count; i++) survey_light(&s, &scene->light[i]);
   survey_surroundings(&s);
   return ABBE_OK;

@@ -33,16 +33,16 @@ static abbe_result read_side(abbe_yaml *yaml, abbe_yaml_node node, double out[3]
 static abbe_result read_frame(abbe_yaml *yaml, abbe_yaml_node node, abbe_error *error) {
   double fill = 0.7, side[3];
   const bool framed = abbe_yaml_get(yaml, node, "frame").id != 0;
-  abbe_result result = read_side(yaml, node, side, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "fill", 0.01, 1, &fill, error);
+  ABBE_TRY(read_side(yaml, node, side, error));
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "fill", 0.01, 1, &fill, error));
   static const char *const own[] = {"elevation", "azimuth", "fill"};
-  for (int i = 0; i < 3 && result == ABBE_OK && !framed; i++)
+  for (int i = 0; i < 3 && !framed; i++)
     if (abbe_yaml_get(yaml, node, own[i]).id != 0)
       return abbe_yaml_fail(yaml, abbe_yaml_get(yaml, node, own[i]), error,
                             "'%s' goes with 'frame: [NAME, ...]', the objects that are to fill the "
                             "picture; a camera of an 'eye' and a 'target' has none",
                             own[i]);
-  return result;
+  return ABBE_OK;
 }
 
 /* ---- the lens ---- */
@@ -198,10 +198,9 @@ static abbe_result frame(abbe_yaml *yaml, abbe_yaml_node node, const abbe_scene 
   const bool targeted = abbe_yaml_get(yaml, node, "target").id != 0;
   double fill = 0.7, far = 0, aside[2], min[3], max[3];
   axes a;
-  abbe_result result = mark_all(yaml, abbe_yaml_get(yaml, node, "frame"), scene, framed, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "fill", 0.01, 1, &fill, error);
-  if (result == ABBE_OK) result = read_side(yaml, node, a.of[2], error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(mark_all(yaml, abbe_yaml_get(yaml, node, "frame"), scene, framed, error));
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "fill", 0.01, 1, &fill, error));
+  ABBE_TRY(read_side(yaml, node, a.of[2], error));
   for (int k = 0; k < 3; k++) {
     min[k] = INFINITY, max[k] = -INFINITY;
     for (size_t i = 0; i < scene->object_count; i++)
@@ -282,22 +281,21 @@ static abbe_result focus(abbe_yaml *yaml, abbe_yaml_node node, double focal, abb
   double number;
   const abbe_yaml_node at = abbe_yaml_get(yaml, node, "focus");
   const char *text = abbe_yaml_text(yaml, at);
-  abbe_result result = read_aperture(yaml, node, &number, error);
-  if (result != ABBE_OK || number <= 0) return result;
+  ABBE_TRY(read_aperture(yaml, node, &number, error));
+  if (number <= 0) return ABBE_OK;
   const double lens = focal; /* without one the film is there for the f-number alone */
   if (focal <= 0) focal = 0.5 * FILM_M / tan(0.5 * c->fov_y_rad);
   c->aperture = focal / number;
   c->focus = far_of(c);
   if (at.id == 0) return ABBE_OK;
   if (text != NULL && strchr("0123456789.-+", text[0]) != NULL) {
-    result = abbe_yaml_get_length(yaml, node, "focus", 1e-6, ABBE_SCENE_FAR, &c->focus, error);
+    ABBE_TRY(abbe_yaml_get_length(yaml, node, "focus", 1e-6, ABBE_SCENE_FAR, &c->focus, error));
   } else {
-    result = mark(yaml, at, scene, "focus", named, error);
-    if (result == ABBE_OK) c->focus = distance_to(scene, named);
-    if (result == ABBE_OK && !(c->focus > 0))
-      return abbe_yaml_fail(yaml, at, error, "'%s' is behind the camera", text);
+    ABBE_TRY(mark(yaml, at, scene, "focus", named, error));
+    c->focus = distance_to(scene, named);
+    if (!(c->focus > 0)) return abbe_yaml_fail(yaml, at, error, "'%s' is behind the camera", text);
   }
-  if (result != ABBE_OK || c->focus > lens) return result;
+  if (c->focus > lens) return ABBE_OK;
   return abbe_yaml_fail(yaml, at, error,
                         "a lens is sharp beyond its focal length, %.3g mm, and 'focus' is %.3g mm "
                         "away",
@@ -325,9 +323,8 @@ abbe_result abbe_camera_frame(abbe_yaml *yaml, abbe_yaml_node root, abbe_scene *
   const abbe_yaml_node node = abbe_yaml_get(yaml, root, "camera");
   abbe_camera *c = &scene->camera;
   double view[3], side[3], focal;
-  abbe_result result = read_lens(yaml, node, &focal, error);
-  if (result == ABBE_OK) result = place(yaml, node, focal, scene, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_lens(yaml, node, &focal, error));
+  ABBE_TRY(place(yaml, node, focal, scene, error));
   abbe_vector_subtract(c->target, c->eye, view);
   if (!(abbe_vector_length(view) > 0.0))
     return abbe_yaml_fail(yaml, node, error, "the camera's 'eye' and 'target' are the same point");
@@ -336,6 +333,6 @@ abbe_result abbe_camera_frame(abbe_yaml *yaml, abbe_yaml_node root, abbe_scene *
     return abbe_yaml_fail(yaml, node, error,
                           "the camera's 'up' points along its view (or is zero); any other "
                           "direction will do");
-  result = focus(yaml, node, focal, scene, error);
-  return result == ABBE_OK ? check_pupil(yaml, node, scene, error) : result;
+  ABBE_TRY(focus(yaml, node, focal, scene, error));
+  return check_pupil(yaml, node, scene, error);
 }

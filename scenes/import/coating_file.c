@@ -31,14 +31,14 @@ static abbe_result read_stuff(const abbe_object_reading *r, abbe_yaml_node node,
     return abbe_yaml_fail(r->yaml, node, error,
                           "a layer is of a material, an index or [n, k], such as MgF2, 1.38 or "
                           "[0.42, 2.4]");
-  abbe_result result =
-      abbe_yaml_number(r->yaml, n, "the index of a layer", 0, MOST_INDEX, &out->index[0], error);
-  if (result == ABBE_OK && !(out->index[0] > 0))
-    result = abbe_yaml_fail(r->yaml, n, error, "the index of a layer is above 0");
-  if (result == ABBE_OK && pair)
-    result = abbe_yaml_number(r->yaml, abbe_yaml_item(r->yaml, node, 1), "k of a layer", 0,
-                              MOST_INDEX, &out->index[1], error);
-  return result;
+  ABBE_TRY(
+      abbe_yaml_number(r->yaml, n, "the index of a layer", 0, MOST_INDEX, &out->index[0], error));
+  if (!(out->index[0] > 0))
+    return abbe_yaml_fail(r->yaml, n, error, "the index of a layer is above 0");
+  if (pair)
+    ABBE_TRY(abbe_yaml_number(r->yaml, abbe_yaml_item(r->yaml, node, 1), "k of a layer", 0,
+                              MOST_INDEX, &out->index[1], error));
+  return ABBE_OK;
 }
 
 /* [what, thickness]: nm, or quarters of the wavelength quarter_nm in it. */
@@ -76,15 +76,15 @@ static abbe_result read_layers(const abbe_object_reading *r, abbe_yaml_node node
   double quarter_nm = 0;
   size_t count;
   abbe_yaml_node list;
-  abbe_result result =
-      abbe_scene_value_list(r->yaml, node, "layers", ABBE_FILM_MOST_LAYERS, &list, &count, error);
-  if (result == ABBE_OK && count == 0)
-    result = abbe_yaml_fail(r->yaml, list, error, "'layers' is empty: leave the 'coating' out");
-  if (result == ABBE_OK && abbe_yaml_get(r->yaml, node, "quarter").id != 0)
-    result = abbe_yaml_get_number(r->yaml, node, "quarter", 100, 10000, &quarter_nm, error);
-  for (size_t i = 0; i < count && result == ABBE_OK; i++)
-    result = read_layer(r, abbe_yaml_item(r->yaml, list, i), table, quarter_nm, out, error);
-  return result;
+  ABBE_TRY(
+      abbe_scene_value_list(r->yaml, node, "layers", ABBE_FILM_MOST_LAYERS, &list, &count, error));
+  if (count == 0)
+    return abbe_yaml_fail(r->yaml, list, error, "'layers' is empty: leave the 'coating' out");
+  if (abbe_yaml_get(r->yaml, node, "quarter").id != 0)
+    ABBE_TRY(abbe_yaml_get_number(r->yaml, node, "quarter", 100, 10000, &quarter_nm, error));
+  for (size_t i = 0; i < count; i++)
+    ABBE_TRY(read_layer(r, abbe_yaml_item(r->yaml, list, i), table, quarter_nm, out, error));
+  return ABBE_OK;
 }
 
 static abbe_result read_file(const abbe_object_reading *r, abbe_yaml_node node,
@@ -134,12 +134,11 @@ static abbe_result read_faces(const abbe_object_reading *r, abbe_yaml_node node,
   if (r->form == ABBE_OBJECT_SPHERE)
     return abbe_yaml_fail(r->yaml, faces, error, "a sphere has no facets: leave 'faces' out");
   if (!abbe_yaml_is_sequence(r->yaml, faces)) return add_name(r, faces, &used, out, error);
-  abbe_result result = ABBE_OK;
   if (abbe_yaml_count(r->yaml, faces) == 0)
-    result = abbe_yaml_fail(r->yaml, faces, error, "'faces' is empty: leave it out, or name some");
-  for (size_t i = 0; i < abbe_yaml_count(r->yaml, faces) && result == ABBE_OK; i++)
-    result = add_name(r, abbe_yaml_item(r->yaml, faces, i), &used, out, error);
-  return result;
+    return abbe_yaml_fail(r->yaml, faces, error, "'faces' is empty: leave it out, or name some");
+  for (size_t i = 0; i < abbe_yaml_count(r->yaml, faces); i++)
+    ABBE_TRY(add_name(r, abbe_yaml_item(r->yaml, faces, i), &used, out, error));
+  return ABBE_OK;
 }
 
 static abbe_result read_one(const abbe_object_reading *r, abbe_yaml_node node,
@@ -152,10 +151,9 @@ static abbe_result read_one(const abbe_object_reading *r, abbe_yaml_node node,
                           "a 'coating' is {layers: [[1.38, 99.6]]}, from outside in, nm, or {file: "
                           "COATING.DAT, name: AR}");
   abbe_coating *out = &all->coating[all->count++];
-  abbe_result result =
-      file ? read_file(r, node, table, out, error) : read_layers(r, node, table, out, error);
-  if (result == ABBE_OK) result = read_faces(r, node, out, error);
-  return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, node, "a 'coating'", error) : result;
+  ABBE_TRY(file ? read_file(r, node, table, out, error) : read_layers(r, node, table, out, error));
+  ABBE_TRY(read_faces(r, node, out, error));
+  return abbe_yaml_check_keys(r->yaml, node, "a 'coating'", error);
 }
 
 /* A number, or {alpha: 0.3, faces: girdle}. */
@@ -303,6 +301,6 @@ static abbe_result settle(const abbe_object_reading *r, const abbe_object *objec
 
 abbe_result abbe_object_settle_coating(const abbe_object_reading *r, abbe_object *object,
                                        abbe_error *error) {
-  const abbe_result result = settle(r, object, "coating", object->coatings, error);
-  return result == ABBE_OK ? settle(r, object, "roughness", object->roughness, error) : result;
+  ABBE_TRY(settle(r, object, "coating", object->coatings, error));
+  return settle(r, object, "roughness", object->roughness, error);
 }

@@ -32,21 +32,19 @@ static abbe_result read_turn(abbe_yaml *yaml, abbe_yaml_node node, double to_map
   const abbe_yaml_node tilt = abbe_yaml_get(yaml, node, "tilt");
   double rotate = 0, axis[3] = {0}, angle = 0;
   abbe_yaml_node ignored;
-  abbe_result result = abbe_yaml_get_number(yaml, node, "rotate", -3600, 3600, &rotate, error);
-  if (result == ABBE_OK && tilt.id) {
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "rotate", -3600, 3600, &rotate, error));
+  if (tilt.id) {
     if (!abbe_yaml_is_mapping(yaml, tilt))
       return abbe_yaml_fail(yaml, tilt, error, "'tilt' wants {axis: [x, y, z], angle: degrees}");
-    result = abbe_scene_value_point(yaml, tilt, "axis", axis, error);
-    if (result == ABBE_OK) result = abbe_yaml_require(yaml, tilt, "angle", &ignored, error);
-    if (result == ABBE_OK)
-      result = abbe_yaml_get_number(yaml, tilt, "angle", -3600, 3600, &angle, error);
-    if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, tilt, "'tilt'", error);
-    if (result == ABBE_OK && !abbe_vector_normalise(axis))
-      result = abbe_yaml_fail(yaml, tilt, error, "'axis' is zero; it must point somewhere");
+    ABBE_TRY(abbe_scene_value_point(yaml, tilt, "axis", axis, error));
+    ABBE_TRY(abbe_yaml_require(yaml, tilt, "angle", &ignored, error));
+    ABBE_TRY(abbe_yaml_get_number(yaml, tilt, "angle", -3600, 3600, &angle, error));
+    ABBE_TRY(abbe_yaml_check_keys(yaml, tilt, "'tilt'", error));
+    if (!abbe_vector_normalise(axis))
+      return abbe_yaml_fail(yaml, tilt, error, "'axis' is zero; it must point somewhere");
   }
-  if (result == ABBE_OK)
-    abbe_environment_turn(rotate * ABBE_DEGREE, tilt.id ? axis : NULL, angle * ABBE_DEGREE, to_map);
-  return result;
+  abbe_environment_turn(rotate * ABBE_DEGREE, tilt.id ? axis : NULL, angle * ABBE_DEGREE, to_map);
+  return ABBE_OK;
 }
 
 static abbe_result read_picture(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
@@ -95,11 +93,10 @@ static abbe_result read_size(abbe_yaml *yaml, abbe_yaml_node node, abbe_environm
 static abbe_result read_scale(abbe_yaml *yaml, abbe_yaml_node node, abbe_radiance_map *map,
                               abbe_error *error) {
   double scale = 1;
-  const abbe_result result =
-      abbe_yaml_get_number(yaml, node, "scale", 1e-12, ABBE_SCENE_BRIGHTEST, &scale, error);
-  for (size_t i = 0; result == ABBE_OK && scale != 1 && i < 3 * map->width * map->height; i++)
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "scale", 1e-12, ABBE_SCENE_BRIGHTEST, &scale, error));
+  for (size_t i = 0; scale != 1 && i < 3 * map->width * map->height; i++)
     map->rgb[i] = (float)((double)map->rgb[i] * scale);
-  return result;
+  return ABBE_OK;
 }
 
 enum { MAX_KNOTS = 1024, COSINE_KNOTS = 181 };
@@ -173,8 +170,7 @@ static abbe_result read_place(const reading *r, abbe_yaml_node node, abbe_enviro
   if (found) *found = towards.id || elevation.id;
   if (found && !*found && !around.id) return ABBE_OK;
   if (towards.id) {
-    abbe_result result = abbe_scene_value_point(r->yaml, node, "towards", out->centre, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_scene_value_point(r->yaml, node, "towards", out->centre, error));
     if (!abbe_vector_normalise(out->centre))
       return abbe_yaml_fail(r->yaml, towards, error, "'towards' is zero; it must point somewhere");
     up = atan2(out->centre[2], hypot(out->centre[0], out->centre[1]));
@@ -197,11 +193,10 @@ static abbe_result read_sun(reading *r, abbe_yaml_node node, abbe_error *error) 
   abbe_environment_source *sun = &r->sun;
   double irradiance[3], diameter = 0.533 * ABBE_DEGREE;
   *sun = (abbe_environment_source){.kind = ABBE_SOURCE_DISK};
-  abbe_result result = read_place(r, node, sun, NULL, error);
-  if (result == ABBE_OK) result = require_colour(r, node, "irradiance", irradiance, error);
-  if (result == ABBE_OK) result = read_angle(r, node, "diameter", 0.1, 90, &diameter, error);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(r->yaml, node, "the sun", error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_place(r, node, sun, NULL, error));
+  ABBE_TRY(require_colour(r, node, "irradiance", irradiance, error));
+  ABBE_TRY(read_angle(r, node, "diameter", 0.1, 90, &diameter, error));
+  ABBE_TRY(abbe_yaml_check_keys(r->yaml, node, "the sun", error));
   sun->radius_rad = diameter / 2;
   for (int k = 0; k < 3; k++)
     sun->radiance[k] = abbe_environment_source_disk_radiance(irradiance[k], sun->radius_rad);
@@ -236,17 +231,15 @@ static abbe_result read_sky(reading *r, abbe_yaml_node node, abbe_error *error) 
   const abbe_yaml_node zenith = abbe_yaml_get(r->yaml, node, "zenith");
   const abbe_yaml_node irradiance = abbe_yaml_get(r->yaml, node, "irradiance");
   bool found = false;
-  abbe_result result = read_sky_type(r, node, &sky.sky.type, error);
-  if (result == ABBE_OK) result = read_place(r, node, &place, &found, error);
-  if (result == ABBE_OK && (zenith.id != 0) == (irradiance.id != 0))
-    result = abbe_yaml_fail(r->yaml, node, error,
-                            "a sky has either a 'zenith' (its radiance there) or an 'irradiance' "
-                            "(on the ground); this one has %s",
-                            zenith.id ? "both" : "neither");
-  if (result == ABBE_OK)
-    result = require_colour(r, node, zenith.id ? "zenith" : "irradiance", sky.radiance, error);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(r->yaml, node, "a sky", error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_sky_type(r, node, &sky.sky.type, error));
+  ABBE_TRY(read_place(r, node, &place, &found, error));
+  if ((zenith.id != 0) == (irradiance.id != 0))
+    return abbe_yaml_fail(r->yaml, node, error,
+                          "a sky has either a 'zenith' (its radiance there) or an 'irradiance' "
+                          "(on the ground); this one has %s",
+                          zenith.id ? "both" : "neither");
+  ABBE_TRY(require_colour(r, node, zenith.id ? "zenith" : "irradiance", sky.radiance, error));
+  ABBE_TRY(abbe_yaml_check_keys(r->yaml, node, "a sky", error));
   if (abbe_sky_needs_sun(sky.sky.type) && !found && !r->has_sun)
     return abbe_yaml_fail(r->yaml, node, error,
                           "this sky is brighter about the sun: say by 'elevation' and 'azimuth' "
@@ -305,18 +298,16 @@ static abbe_result read_spot(reading *r, abbe_yaml_node node, abbe_error *error)
   const abbe_yaml_node solid = abbe_yaml_get(r->yaml, node, "solid_angle");
   const abbe_yaml_node sigma = abbe_yaml_get(r->yaml, node, "sigma");
   double solid_angle = 0;
-  abbe_result result = read_place(r, node, &spot, NULL, error);
-  if (result == ABBE_OK) result = require_colour(r, node, "radiance", spot.radiance, error);
-  if (result == ABBE_OK && (solid.id != 0) == (sigma.id != 0))
-    result = abbe_yaml_fail(r->yaml, node, error,
-                            "a spot has either a 'sigma' (degrees) or a 'solid_angle' (sr); this "
-                            "one has %s",
-                            solid.id ? "both" : "neither");
-  if (result == ABBE_OK) result = read_angle(r, node, "sigma", 0.05, 60, &spot.radius_rad, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(r->yaml, node, "solid_angle", 1e-5, 1, &solid_angle, error);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(r->yaml, node, "a spot", error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_place(r, node, &spot, NULL, error));
+  ABBE_TRY(require_colour(r, node, "radiance", spot.radiance, error));
+  if ((solid.id != 0) == (sigma.id != 0))
+    return abbe_yaml_fail(r->yaml, node, error,
+                          "a spot has either a 'sigma' (degrees) or a 'solid_angle' (sr); this "
+                          "one has %s",
+                          solid.id ? "both" : "neither");
+  ABBE_TRY(read_angle(r, node, "sigma", 0.05, 60, &spot.radius_rad, error));
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, node, "solid_angle", 1e-5, 1, &solid_angle, error));
+  ABBE_TRY(abbe_yaml_check_keys(r->yaml, node, "a spot", error));
   if (solid.id) spot.radius_rad = abbe_environment_source_spot_sigma(solid_angle);
   return add(r, node, &spot, error);
 }
@@ -393,15 +384,14 @@ static abbe_result read_list(reading *r, abbe_yaml_node node, const char *key,
   if (!abbe_yaml_is_sequence(r->yaml, list) || count > ABBE_ENVIRONMENT_MAX_SOURCES)
     return abbe_yaml_fail(r->yaml, list, error, "'%s' wants a list of at most %d", key,
                           ABBE_ENVIRONMENT_MAX_SOURCES);
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < count; i++) {
     const abbe_yaml_node item = abbe_yaml_item(r->yaml, list, i);
-    result = abbe_yaml_is_mapping(r->yaml, item)
+    ABBE_TRY(abbe_yaml_is_mapping(r->yaml, item)
                  ? read(r, item, error)
                  : abbe_yaml_fail(r->yaml, item, error,
-                                  "an entry of '%s' must be a mapping (key: value)", key);
+                                  "an entry of '%s' must be a mapping (key: value)", key));
   }
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result read_one(reading *r, abbe_yaml_node node, const char *key,

@@ -86,10 +86,9 @@ static abbe_result read_side(abbe_yaml *yaml, abbe_yaml_node node, const char *k
 static abbe_result read_rectangle(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
                                   abbe_error *error) {
   double width = 0, height = 0, roll = 0, across[3], up[3];
-  abbe_result result = read_side(yaml, node, "width", &width, error);
-  if (result == ABBE_OK) result = read_side(yaml, node, "height", &height, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "roll", -360, 360, &roll, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_side(yaml, node, "width", &width, error));
+  ABBE_TRY(read_side(yaml, node, "height", &height, error));
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "roll", -360, 360, &roll, error));
   abbe_light_upright(out->direction, across, up);
   const double c = cos(roll * ABBE_DEGREE), s = sin(roll * ABBE_DEGREE);
   for (int k = 0; k < 3; k++) {
@@ -109,30 +108,25 @@ static abbe_result refuse_sides(abbe_yaml *yaml, abbe_yaml_node node, int kind, 
 
 static abbe_result read_shape_of_light(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
                                        abbe_error *error) {
-  abbe_result result = ABBE_OK;
   if (out->kind != ABBE_LIGHT_DIRECTIONAL)
-    result = abbe_scene_value_point(yaml, node, "position", out->position, error);
-  if (result == ABBE_OK && out->kind == ABBE_LIGHT_POINT) {
-    result = refuse_key(yaml, node, "direction", 0, "it shines in every direction", error);
-    if (result == ABBE_OK)
-      result = refuse_key(yaml, node, "target", 0, "it shines in every direction", error);
-  } else if (result == ABBE_OK) {
-    result = read_direction(yaml, node, out, error);
+    ABBE_TRY(abbe_scene_value_point(yaml, node, "position", out->position, error));
+  if (out->kind == ABBE_LIGHT_POINT) {
+    ABBE_TRY(refuse_key(yaml, node, "direction", 0, "it shines in every direction", error));
+    ABBE_TRY(refuse_key(yaml, node, "target", 0, "it shines in every direction", error));
+  } else {
+    ABBE_TRY(read_direction(yaml, node, out, error));
   }
-  if (result == ABBE_OK && out->kind == ABBE_LIGHT_DISK)
-    result = read_radius(yaml, node, out, error);
-  else if (result == ABBE_OK)
-    result = refuse_key(yaml, node, "radius", (int)out->kind, "a disk light has", error);
-  if (result == ABBE_OK && out->kind == ABBE_LIGHT_RECTANGLE)
-    result = read_rectangle(yaml, node, out, error);
-  else if (result == ABBE_OK)
-    result = refuse_sides(yaml, node, (int)out->kind, error);
-  if (result == ABBE_OK && out->kind == ABBE_LIGHT_SPOT) return read_cone(yaml, node, out, error);
-  if (result == ABBE_OK)
-    result = refuse_key(yaml, node, "cone", (int)out->kind, "a spot light has", error);
-  if (result == ABBE_OK)
-    result = refuse_key(yaml, node, "soft", (int)out->kind, "a spot light has", error);
-  return result;
+  if (out->kind == ABBE_LIGHT_DISK)
+    ABBE_TRY(read_radius(yaml, node, out, error));
+  else
+    ABBE_TRY(refuse_key(yaml, node, "radius", (int)out->kind, "a disk light has", error));
+  if (out->kind == ABBE_LIGHT_RECTANGLE)
+    ABBE_TRY(read_rectangle(yaml, node, out, error));
+  else
+    ABBE_TRY(refuse_sides(yaml, node, (int)out->kind, error));
+  if (out->kind == ABBE_LIGHT_SPOT) return read_cone(yaml, node, out, error);
+  ABBE_TRY(refuse_key(yaml, node, "cone", (int)out->kind, "a spot light has", error));
+  return refuse_key(yaml, node, "soft", (int)out->kind, "a spot light has", error);
 }
 
 /* What each kind of light is bright in. */
@@ -148,22 +142,20 @@ static abbe_result read_power(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *
                               abbe_error *error) {
   const char *key = powers[out->kind].key;
   abbe_yaml_node value;
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < sizeof powers / sizeof *powers && result == ABBE_OK; i++)
+  for (size_t i = 0; i < sizeof powers / sizeof *powers; i++)
     if (strcmp(powers[i].key, key) != 0)
-      result = refuse_key(yaml, node, powers[i].key, (int)out->kind, powers[out->kind].said, error);
-  if (result == ABBE_OK) result = abbe_yaml_require(yaml, node, key, &value, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, node, key, 0, ABBE_SCENE_BRIGHTEST, &out->power, error);
-  if (result == ABBE_OK && !(out->power > 0.0))
-    result = abbe_yaml_fail(yaml, value, error, "'%s' is zero; a light must shine", key);
-  if (result == ABBE_OK && out->power < FAINTEST)
-    result =
-        abbe_yaml_fail(yaml, value, error,
-                       "'%s: %g' is too faint: pictures and maps are kept in single precision, "
-                       "which takes %g and more",
-                       key, out->power, FAINTEST);
-  return result;
+      ABBE_TRY(
+          refuse_key(yaml, node, powers[i].key, (int)out->kind, powers[out->kind].said, error));
+  ABBE_TRY(abbe_yaml_require(yaml, node, key, &value, error));
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, key, 0, ABBE_SCENE_BRIGHTEST, &out->power, error));
+  if (!(out->power > 0.0))
+    return abbe_yaml_fail(yaml, value, error, "'%s' is zero; a light must shine", key);
+  if (out->power < FAINTEST)
+    return abbe_yaml_fail(yaml, value, error,
+                          "'%s: %g' is too faint: pictures and maps are kept in single precision, "
+                          "which takes %g and more",
+                          key, out->power, FAINTEST);
+  return ABBE_OK;
 }
 
 static abbe_result read_light(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,

@@ -13,11 +13,11 @@ static abbe_result read_direction(const abbe_object_reading *r, abbe_yaml_node p
                                   const char *key, double out[3], abbe_error *error) {
   const abbe_yaml_node node = abbe_yaml_get(r->yaml, parent, key);
   if (node.id == 0) return ABBE_OK;
-  const abbe_result result =
-      abbe_yaml_get_numbers(r->yaml, parent, key, 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out, error);
-  if (result == ABBE_OK && !abbe_vector_normalise(out))
+  ABBE_TRY(
+      abbe_yaml_get_numbers(r->yaml, parent, key, 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out, error));
+  if (!abbe_vector_normalise(out))
     return abbe_yaml_fail(r->yaml, node, error, "'%s' is zero; it must point somewhere", key);
-  return result;
+  return ABBE_OK;
 }
 
 /* x and z, made square: x is turned. */
@@ -27,10 +27,9 @@ static abbe_result read_both(const abbe_object_reading *r, abbe_yaml_node node, 
     return abbe_yaml_fail(r->yaml, node, error,
                           "'axes' wants the principal axes x and z, such as {x: [1, 0, 0], z: [0, "
                           "0, 1]}");
-  abbe_result result = read_direction(r, node, "x", out->axis_x, error);
-  if (result == ABBE_OK) result = read_direction(r, node, "z", out->axis, error);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(r->yaml, node, "'axes'", error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_direction(r, node, "x", out->axis_x, error));
+  ABBE_TRY(read_direction(r, node, "z", out->axis, error));
+  ABBE_TRY(abbe_yaml_check_keys(r->yaml, node, "'axes'", error));
   const bool both = abbe_yaml_get(r->yaml, node, "x").id != 0;
   const double sine = abbe_object_square_axes(out);
   if (both && sine < ABBE_AXES_SQUARE)

@@ -24,14 +24,11 @@ static abbe_result read_shape(const abbe_object_reading *r, abbe_yaml_node node,
                           "0.001, medium: {scattering: 300}} or {size: [0.001, 0.002, 0.001]}");
   surface->normals = round ? ABBE_NORMALS_SMOOTH : ABBE_NORMALS_FLAT;
   for (int k = 0; k < 3; k++) middle[k] = 0;
-  abbe_result result =
-      round ? abbe_yaml_get_length(r->yaml, node, "radius", 0, ABBE_SCENE_FAR, &surface->radius,
-                                   error)
-            : abbe_yaml_get_lengths(r->yaml, node, "size", 3, 0, ABBE_SCENE_FAR, size, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_lengths(r->yaml, node, "centre", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR,
-                                   middle, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(round ? abbe_yaml_get_length(r->yaml, node, "radius", 0, ABBE_SCENE_FAR,
+                                        &surface->radius, error)
+                 : abbe_yaml_get_lengths(r->yaml, node, "size", 3, 0, ABBE_SCENE_FAR, size, error));
+  ABBE_TRY(abbe_yaml_get_lengths(r->yaml, node, "centre", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR,
+                                 middle, error));
   if (!(round ? surface->radius > 0 : size[0] > 0 && size[1] > 0 && size[2] > 0))
     return abbe_yaml_fail(r->yaml, round ? abbe_yaml_get(r->yaml, node, "radius") : box, error,
                           "the '%s' of a cloud is above 0", round ? "radius" : "size");
@@ -91,10 +88,9 @@ abbe_result abbe_object_read_clouds(const abbe_object_reading *r, abbe_object *o
                           "'clouds' wants a list of 1 to %d balls and boxes, as far as the scene "
                           "has room for objects",
                           MOST_CLOUDS);
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < clouds && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < clouds; i++) {
     abbe_object *cloud = &out[(*count)++];
-    result = read_cloud(r, abbe_yaml_item(r->yaml, node, i), i + 1, out, cloud, error);
+    ABBE_TRY(read_cloud(r, abbe_yaml_item(r->yaml, node, i), i + 1, out, cloud, error));
   }
-  return result;
+  return ABBE_OK;
 }

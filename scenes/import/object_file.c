@@ -34,12 +34,10 @@ static abbe_result read_rotate(abbe_yaml *yaml, abbe_yaml_node node, double out[
 static abbe_result read_look(abbe_yaml *yaml, abbe_yaml_node node, double out[16],
                              abbe_error *error) {
   double from[3] = {0}, to[3] = {0}, up[3] = {0.0, 0.0, 1.0}, back[3], view[16];
-  abbe_result result = abbe_scene_value_point(yaml, node, "from", from, error);
-  if (result == ABBE_OK) result = abbe_scene_value_point(yaml, node, "to", to, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_numbers(yaml, node, "up", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, up, error);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "'look'", error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_scene_value_point(yaml, node, "from", from, error));
+  ABBE_TRY(abbe_scene_value_point(yaml, node, "to", to, error));
+  ABBE_TRY(abbe_yaml_get_numbers(yaml, node, "up", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, up, error));
+  ABBE_TRY(abbe_yaml_check_keys(yaml, node, "'look'", error));
   for (int k = 0; k < 3; k++) back[k] = 2.0 * from[k] - to[k];
   abbe_transform_look_at(from, back, up, view);
   if (!(abbe_vector_length(up) > 0.0) || memcmp(from, to, sizeof from) == 0 ||
@@ -52,19 +50,18 @@ static abbe_result read_scale(abbe_yaml *yaml, abbe_yaml_node step, double out[1
                               abbe_error *error) {
   const abbe_yaml_node node = abbe_yaml_get(yaml, step, "scale");
   double factor[3] = {1.0, 1.0, 1.0};
-  abbe_result result;
   if (abbe_yaml_is_sequence(yaml, node)) {
-    result = abbe_yaml_get_numbers(yaml, step, "scale", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, factor,
-                                   error);
+    ABBE_TRY(abbe_yaml_get_numbers(yaml, step, "scale", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, factor,
+                                   error));
   } else {
-    result = abbe_yaml_get_number(yaml, step, "scale", -ABBE_SCENE_FAR, ABBE_SCENE_FAR, &factor[0],
-                                  error);
+    ABBE_TRY(abbe_yaml_get_number(yaml, step, "scale", -ABBE_SCENE_FAR, ABBE_SCENE_FAR, &factor[0],
+                                  error));
     factor[1] = factor[2] = factor[0];
   }
-  if (result == ABBE_OK && factor[0] * factor[1] * factor[2] == 0.0)
-    result = abbe_yaml_fail(yaml, node, error, "'scale' must not be zero");
-  if (result == ABBE_OK) abbe_transform_scale(factor, out);
-  return result;
+  if (factor[0] * factor[1] * factor[2] == 0.0)
+    return abbe_yaml_fail(yaml, node, error, "'scale' must not be zero");
+  abbe_transform_scale(factor, out);
+  return ABBE_OK;
 }
 
 static abbe_result read_step(abbe_yaml *yaml, abbe_yaml_node step, double out[16],
@@ -82,9 +79,9 @@ static abbe_result read_step(abbe_yaml *yaml, abbe_yaml_node step, double out[16
   if (scale.id) return read_scale(yaml, step, out, error);
   if (look.id) return read_look(yaml, look, out, error);
   (void)translate;
-  abbe_result result = abbe_scene_value_point(yaml, step, "translate", offset, error);
-  if (result == ABBE_OK) abbe_transform_translate(offset, out);
-  return result;
+  ABBE_TRY(abbe_scene_value_point(yaml, step, "translate", offset, error));
+  abbe_transform_translate(offset, out);
+  return ABBE_OK;
 }
 
 static abbe_result read_transform(abbe_object_reading *r, abbe_error *error) {
@@ -222,8 +219,8 @@ static abbe_result read_mirror(const abbe_object_reading *r, abbe_yaml_node node
   const bool signs = text != NULL && text[0] != '\0' && strchr(".+-", text[0]) != NULL; /* .nan */
   if (signs || (text != NULL && abbe_number_read(text, &end, &number) && *end == '\0'))
     return abbe_yaml_get_number(r->yaml, r->node, "mirror", 0, 1, &out->mirror_reflectance, error);
-  const abbe_result result = find_material(r, "mirror", table, &out->conductor, error);
-  if (result != ABBE_OK || abbe_material_is_conductor(out->conductor)) return result;
+  ABBE_TRY(find_material(r, "mirror", table, &out->conductor, error));
+  if (abbe_material_is_conductor(out->conductor)) return ABBE_OK;
   abbe_error_set(
       error, ABBE_UNSUPPORTED,
       "the material '%s' is no conductor, so 'mirror' cannot be of it; take a metal such "
@@ -278,12 +275,12 @@ static abbe_result read_grooves(const abbe_object_reading *r, abbe_yaml_node nod
                           "'brushed' wants {along: [x, y, z]} or {around: [x, y, z]}: grooves that "
                           "run that way, or around that axis");
   out->around = around.id != 0;
-  abbe_result result =
-      abbe_scene_value_point(r->yaml, node, out->around ? "around" : "along", out->axis, error);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(r->yaml, node, "'brushed'", error);
-  if (result == ABBE_OK && !abbe_vector_normalise(out->axis))
+  ABBE_TRY(
+      abbe_scene_value_point(r->yaml, node, out->around ? "around" : "along", out->axis, error));
+  ABBE_TRY(abbe_yaml_check_keys(r->yaml, node, "'brushed'", error));
+  if (!abbe_vector_normalise(out->axis))
     return abbe_yaml_fail(r->yaml, node, error, "'brushed' is zero; it must point somewhere");
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result read_brushing(const abbe_object_reading *r, abbe_object *out,
@@ -301,14 +298,14 @@ static abbe_result read_brushing(const abbe_object_reading *r, abbe_object *out,
     return abbe_yaml_fail(r->yaml, brushed, error,
                           "'brushed' says which way grooves run; a 'roughness: [along, across]' "
                           "says how deep they are");
-  abbe_result result = read_roughness(r, rough, &out->brushing.facets, error);
-  if (result == ABBE_OK && brushed.id) result = read_grooves(r, brushed, &out->brushing, error);
+  ABBE_TRY(read_roughness(r, rough, &out->brushing.facets, error));
+  if (brushed.id) ABBE_TRY(read_grooves(r, brushed, &out->brushing, error));
   const abbe_microfacets *m = &out->brushing.facets;
-  if (result == ABBE_OK && !brushed.id && (m->x < m->y || m->y < m->x))
+  if (!brushed.id && (m->x < m->y || m->y < m->x))
     return abbe_yaml_fail(r->yaml, rough, error,
                           "a 'roughness' of two numbers wants 'brushed: {along: [x, y, z]}' or "
                           "'{around: ...}', which says which way the grooves run");
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result read_substance(const abbe_object_reading *r, const abbe_material_table *table,
@@ -357,9 +354,8 @@ static abbe_mesh_normals normals_of(const abbe_object_reading *r) {
 static abbe_result read_extent(const abbe_object_reading *r, const char *key, const char *what,
                                double *out, abbe_error *error) {
   const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, key);
-  const abbe_result result =
-      abbe_yaml_get_length(r->yaml, r->node, key, 0, ABBE_SCENE_FAR, out, error);
-  if (result != ABBE_OK || node.id == 0 || *out > 0) return result;
+  ABBE_TRY(abbe_yaml_get_length(r->yaml, r->node, key, 0, ABBE_SCENE_FAR, out, error));
+  if (node.id == 0 || *out > 0) return ABBE_OK;
   return abbe_yaml_fail(r->yaml, node, error, "'%s' is %s, in metres, above 0", key, what);
 }
 

@@ -90,12 +90,12 @@ static abbe_result read_rain(const abbe_object_reading *r, abbe_water_rain *out,
 static abbe_result read_cells(const abbe_object_reading *r, size_t cells[2], abbe_error *error) {
   const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, "cells");
   double number[2] = {0, 0};
-  abbe_result result = abbe_yaml_is_sequence(r->yaml, node)
-                           ? abbe_yaml_get_numbers(r->yaml, r->node, "cells", 2, 1,
-                                                   ABBE_WATER_MOST_CELLS, number, error)
-                           : abbe_yaml_get_number(r->yaml, r->node, "cells", 1,
-                                                  ABBE_WATER_MOST_CELLS, number, error);
-  if (result != ABBE_OK || node.id == 0) return result;
+  ABBE_TRY(abbe_yaml_is_sequence(r->yaml, node)
+               ? abbe_yaml_get_numbers(r->yaml, r->node, "cells", 2, 1, ABBE_WATER_MOST_CELLS,
+                                       number, error)
+               : abbe_yaml_get_number(r->yaml, r->node, "cells", 1, ABBE_WATER_MOST_CELLS, number,
+                                      error));
+  if (node.id == 0) return ABBE_OK;
   if (!abbe_yaml_is_sequence(r->yaml, node)) number[1] = number[0];
   for (int k = 0; k < 2; k++) {
     cells[k] = (size_t)number[k];
@@ -110,28 +110,23 @@ static abbe_result object_read_water(const abbe_object_reading *r, abbe_mesh *ou
                                      abbe_error *error) {
   abbe_water water = {0};
   abbe_yaml_node list;
-  void *waves = NULL, *drops = NULL;
-  abbe_result result = abbe_scene_value_point(r->yaml, r->node, "size", water.size, error);
-  if (result == ABBE_OK) result = abbe_scene_value_time(r->yaml, &water.time, error);
-  if (result == ABBE_OK) result = read_cells(r, water.cells, error);
-  if (result == ABBE_OK)
-    result = list_of(r, "waves", ABBE_WATER_MOST_WAVES, sizeof *water.wave, &waves,
-                     &water.wave_count, &list, error);
-  for (size_t i = 0; i < water.wave_count && result == ABBE_OK; i++)
-    result =
-        read_wave(r->yaml, abbe_yaml_item(r->yaml, list, i), (abbe_water_wave *)waves + i, error);
-  if (result == ABBE_OK)
-    result = list_of(r, "drops", 4096, sizeof *water.drop, &drops, &water.drop_count, &list, error);
-  for (size_t i = 0; i < water.drop_count && result == ABBE_OK; i++)
-    result =
-        read_drop(r->yaml, abbe_yaml_item(r->yaml, list, i), (abbe_water_drop *)drops + i, error);
-  if (result == ABBE_OK) result = read_rain(r, &water.rain, error);
+  ABBE_FREED void *waves = NULL, *drops = NULL;
+  ABBE_TRY(abbe_scene_value_point(r->yaml, r->node, "size", water.size, error));
+  ABBE_TRY(abbe_scene_value_time(r->yaml, &water.time, error));
+  ABBE_TRY(read_cells(r, water.cells, error));
+  ABBE_TRY(list_of(r, "waves", ABBE_WATER_MOST_WAVES, sizeof *water.wave, &waves, &water.wave_count,
+                   &list, error));
+  for (size_t i = 0; i < water.wave_count; i++)
+    ABBE_TRY(
+        read_wave(r->yaml, abbe_yaml_item(r->yaml, list, i), (abbe_water_wave *)waves + i, error));
+  ABBE_TRY(list_of(r, "drops", 4096, sizeof *water.drop, &drops, &water.drop_count, &list, error));
+  for (size_t i = 0; i < water.drop_count; i++)
+    ABBE_TRY(
+        read_drop(r->yaml, abbe_yaml_item(r->yaml, list, i), (abbe_water_drop *)drops + i, error));
+  ABBE_TRY(read_rain(r, &water.rain, error));
   water.wave = waves;
   water.drop = drops;
-  if (result == ABBE_OK) result = abbe_water_make(&water, out, error);
-  free(waves);
-  free(drops);
-  return result;
+  return abbe_water_make(&water, out, error);
 }
 
 static const char *const shape_names[] = {"sphere",    "ring",  "gem", "brilliant", "prism", "box",
@@ -291,12 +286,10 @@ typedef struct cut_reading {
 /* The stone at other angles. */
 static abbe_result stretch(const cut_reading *q, abbe_cut *cut, abbe_cut_polyhedron *stone,
                            abbe_error *error) {
-  abbe_cut_polyhedron own = *stone;
+  ABBE_OWNED(abbe_cut_polyhedron, own) = *stone;
   *stone = (abbe_cut_polyhedron){0};
-  abbe_result result = abbe_cut_stretch_to(cut, &own, q->to_deg[0], q->to_deg[1], error);
-  if (result == ABBE_OK) result = abbe_cut_polyhedron_make(cut, q->weld, stone, error);
-  abbe_cut_polyhedron_free(&own);
-  return result;
+  ABBE_TRY(abbe_cut_stretch_to(cut, &own, q->to_deg[0], q->to_deg[1], error));
+  return abbe_cut_polyhedron_make(cut, q->weld, stone, error);
 }
 
 /* Names of its facets, for what is said of some of them. */
@@ -317,24 +310,16 @@ static abbe_result name_facets(abbe_object_reading *r, const abbe_cut *cut, abbe
 /* The planes of a design as wide as it is to be: the smaller extent of its outline. */
 static abbe_result make_cut(abbe_object_reading *r, const cut_reading *q, abbe_object *object,
                             abbe_error *error) {
-  abbe_cut cut = {0};
-  abbe_cut_polyhedron stone = {0};
-  abbe_result result =
-      abbe_cut_file_read_stone(object->mesh_path, q->weld, &cut, &stone, NULL, error);
-  if (result == ABBE_OK) {
-    if (!abbe_cut_stretch_bound(&cut, &stone)) /* else the pavilion's moves both */
-      object->cut_deg[0] = abbe_cut_stretch_main_deg(&cut, &stone, ABBE_CUT_CROWN);
-    object->cut_deg[1] = abbe_cut_stretch_main_deg(&cut, &stone, ABBE_CUT_PAVILION);
-    if (q->to_deg[0] > 0 || q->to_deg[1] > 0) result = stretch(q, &cut, &stone, error);
-  }
-  if (result == ABBE_OK) {
-    const double own = fmin(stone.max[0] - stone.min[0], stone.max[1] - stone.min[1]);
-    result = abbe_cut_polyhedron_mesh(&cut, &stone, q->width / own, &object->mesh, error);
-  }
-  if (result == ABBE_OK) result = name_facets(r, &cut, error);
-  abbe_cut_polyhedron_free(&stone);
-  abbe_cut_free(&cut);
-  return result;
+  ABBE_OWNED(abbe_cut, cut) = {0};
+  ABBE_OWNED(abbe_cut_polyhedron, stone) = {0};
+  ABBE_TRY(abbe_cut_file_read_stone(object->mesh_path, q->weld, &cut, &stone, NULL, error));
+  if (!abbe_cut_stretch_bound(&cut, &stone)) /* else the pavilion's moves both */
+    object->cut_deg[0] = abbe_cut_stretch_main_deg(&cut, &stone, ABBE_CUT_CROWN);
+  object->cut_deg[1] = abbe_cut_stretch_main_deg(&cut, &stone, ABBE_CUT_PAVILION);
+  if (q->to_deg[0] > 0 || q->to_deg[1] > 0) ABBE_TRY(stretch(q, &cut, &stone, error));
+  const double own = fmin(stone.max[0] - stone.min[0], stone.max[1] - stone.min[1]);
+  ABBE_TRY(abbe_cut_polyhedron_mesh(&cut, &stone, q->width / own, &object->mesh, error));
+  return name_facets(r, &cut, error);
 }
 
 /* The angle of a side's main facets. */
@@ -342,8 +327,8 @@ static abbe_result read_cut_angle(const abbe_object_reading *r, const char *key,
                                   abbe_error *error) {
   const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, key);
   if (node.id == 0) return ABBE_OK;
-  const abbe_result result = abbe_yaml_number(r->yaml, node, key, -360, 360, out, error);
-  if (result != ABBE_OK || (*out > 0 && *out < 90)) return result;
+  ABBE_TRY(abbe_yaml_number(r->yaml, node, key, -360, 360, out, error));
+  if (*out > 0 && *out < 90) return ABBE_OK;
   return abbe_yaml_fail(r->yaml, node, error,
                         "'%s' is the angle of that side's main facets, between 0 and 90 degrees",
                         key);
@@ -351,24 +336,21 @@ static abbe_result read_cut_angle(const abbe_object_reading *r, const char *key,
 
 static abbe_result read_cut(abbe_object_reading *r, abbe_object *object, abbe_error *error) {
   cut_reading q = {.weld = ABBE_CUT_WELD};
-  char *name = NULL;
+  ABBE_FREED char *name = NULL;
   abbe_yaml_node ignored;
-  abbe_result result = abbe_yaml_require(r->yaml, r->node, "file", &ignored, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_string(r->yaml, r->node, "file", &name, error);
-  if (result == ABBE_OK) result = need_length(r, "width", &q.width, error);
-  if (result == ABBE_OK && !(q.width > 0))
-    result = abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, r->node, "width"), error,
-                            "'width' is the stone's, in metres, above 0");
-  if (result == ABBE_OK)
-    result =
-        abbe_yaml_get_number(r->yaml, r->node, "weld", 1e-12, ABBE_CUT_MOST_WELD, &q.weld, error);
-  if (result == ABBE_OK) result = read_cut_angle(r, "crown", &q.to_deg[0], error);
-  if (result == ABBE_OK) result = read_cut_angle(r, "pavilion", &q.to_deg[1], error);
-  if (result == ABBE_OK && (object->mesh_path = abbe_scene_value_path(r->folder, name)) == NULL)
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
-  if (result == ABBE_OK) result = make_cut(r, &q, object, error);
-  free(name);
-  return result;
+  ABBE_TRY(abbe_yaml_require(r->yaml, r->node, "file", &ignored, error));
+  ABBE_TRY(abbe_yaml_get_string(r->yaml, r->node, "file", &name, error));
+  ABBE_TRY(need_length(r, "width", &q.width, error));
+  if (!(q.width > 0))
+    return abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, r->node, "width"), error,
+                          "'width' is the stone's, in metres, above 0");
+  ABBE_TRY(
+      abbe_yaml_get_number(r->yaml, r->node, "weld", 1e-12, ABBE_CUT_MOST_WELD, &q.weld, error));
+  ABBE_TRY(read_cut_angle(r, "crown", &q.to_deg[0], error));
+  ABBE_TRY(read_cut_angle(r, "pavilion", &q.to_deg[1], error));
+  if ((object->mesh_path = abbe_scene_value_path(r->folder, name)) == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
+  return make_cut(r, &q, object, error);
 }
 
 /* Reads 'material: from-file'; *part becomes the name of the material whose triangles are meant. */

@@ -122,10 +122,10 @@ static abbe_result parallelograms(abbe_object *out, abbe_error *error) {
 /* Triangles of one plane have its normal, whatever their own is: so thin ones bend no light. */
 static abbe_result take_plane_normals(abbe_mesh *mesh, const double (*plane)[4],
                                       const uint32_t *plane_of, abbe_error *error) {
-  const abbe_result result = abbe_mesh_compute_normals(mesh, ABBE_NORMALS_FLAT, error);
-  for (size_t c = 0; result == ABBE_OK && c < 3 * mesh->face_count; c++)
+  ABBE_TRY(abbe_mesh_compute_normals(mesh, ABBE_NORMALS_FLAT, error));
+  for (size_t c = 0; c < 3 * mesh->face_count; c++)
     memcpy(mesh->normal[mesh->face[c / 3][c % 3]], plane[plane_of[c / 3]], sizeof *mesh->normal);
-  return result;
+  return ABBE_OK;
 }
 
 /* The planes of a mesh; it is a solid where out->exact.convex says so. */
@@ -298,10 +298,8 @@ static abbe_result solidify(const abbe_object_surface *s, abbe_object *out, size
 static abbe_result flatten(const abbe_object_surface *s, abbe_object *out, abbe_error *error) {
   double moved = 0;
   char text[128];
-  abbe_result result =
-      abbe_convex_flatten(&out->mesh, s->flatten, ABBE_SCENE_MAX_PLANES, &moved, error);
-  if (result == ABBE_OK) result = abbe_mesh_fix(&out->mesh, ABBE_NORMALS_FLAT, NULL, NULL, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_convex_flatten(&out->mesh, s->flatten, ABBE_SCENE_MAX_PLANES, &moved, error));
+  ABBE_TRY(abbe_mesh_fix(&out->mesh, ABBE_NORMALS_FLAT, NULL, NULL, error));
   abbe_number_format(
       text, sizeof text,
       "made a convex solid of planes, of which its corners lie up to %.2g %% of its size off",
@@ -334,15 +332,13 @@ abbe_result abbe_object_place(const abbe_object_surface *s, abbe_object *out, si
                               size_t *count, abbe_error *error) {
   double matrix[16];
   *count = 1;
-  abbe_result result = abbe_object_kind_of(out) == ABBE_OBJECT_REFRACTOR
-                           ? solidify(s, out, room, count, error)
-                           : ABBE_OK;
-  for (size_t i = 0; i < *count && result == ABBE_OK; i++) result = shape_one(s, &out[i], error);
+  ABBE_TRY(abbe_object_kind_of(out) == ABBE_OBJECT_REFRACTOR ? solidify(s, out, room, count, error)
+                                                             : ABBE_OK);
+  for (size_t i = 0; i < *count; i++) ABBE_TRY(shape_one(s, &out[i], error));
   /* what was dropped has no part in its size */
-  if (result == ABBE_OK) result = fit_matrix(s, out, *count, matrix, error);
-  for (size_t i = 0; i < *count && result == ABBE_OK; i++)
-    result = place_one(s, matrix, &out[i], error);
-  return result;
+  ABBE_TRY(fit_matrix(s, out, *count, matrix, error));
+  for (size_t i = 0; i < *count; i++) ABBE_TRY(place_one(s, matrix, &out[i], error));
+  return ABBE_OK;
 }
 
 static abbe_result load(const char *path, const char *column, abbe_spectrum **out,

@@ -215,12 +215,10 @@ static abbe_result change_text(const char *text, size_t size, const char *name,
 static abbe_result parse_changed(const char *text, size_t size, const char *name,
                                  const abbe_scene_options *options, bool keyframes, abbe_yaml **out,
                                  abbe_error *error) {
-  abbe_yaml_edit edit = {0};
-  abbe_result result = change_text(text, size, name, options, &edit, error);
-  if (result == ABBE_OK && keyframes) result = abbe_scene_change_keyframes(&edit, error);
-  if (result == ABBE_OK) result = abbe_yaml_parse(edit.text, edit.size, name, out, error);
-  abbe_yaml_edit_free(&edit);
-  return result;
+  ABBE_OWNED(abbe_yaml_edit, edit) = {0};
+  ABBE_TRY(change_text(text, size, name, options, &edit, error));
+  if (keyframes) ABBE_TRY(abbe_scene_change_keyframes(&edit, error));
+  return abbe_yaml_parse(edit.text, edit.size, name, out, error);
 }
 
 static bool changes(const abbe_scene_options *options) {
@@ -231,9 +229,9 @@ static abbe_result parse_document(const char *text, size_t size, const char *nam
                                   const abbe_scene_options *options, abbe_yaml **out,
                                   abbe_error *error) {
   const bool changed = changes(options);
-  abbe_result result = changed ? parse_changed(text, size, name, options, false, out, error)
-                               : abbe_yaml_parse(text, size, name, out, error);
-  if (result != ABBE_OK || !abbe_scene_change_has_keyframes(*out)) return result;
+  ABBE_TRY(changed ? parse_changed(text, size, name, options, false, out, error)
+                   : abbe_yaml_parse(text, size, name, out, error));
+  if (!abbe_scene_change_has_keyframes(*out)) return ABBE_OK;
   abbe_yaml_free(*out);
   *out = NULL;
   return parse_changed(text, size, name, options, true, out, error);
@@ -249,13 +247,10 @@ static abbe_result read_text(const char *path, const abbe_scene_options *options
   if (options && options->materials) studio.table = options->materials;
   if (options && options->stone && strchr(options->stone, '=') == NULL)
     studio.material = options->stone;
-  char *folder = folder_of(path);
-  const abbe_result result =
-      folder != NULL ? abbe_studio_scene(path, &studio, studio.folder ? studio.folder : folder,
-                                         text, size, error)
-                     : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
-  free(folder);
-  return result;
+  ABBE_FREED char *folder = folder_of(path);
+  return folder != NULL ? abbe_studio_scene(path, &studio, studio.folder ? studio.folder : folder,
+                                            text, size, error)
+                        : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
 }
 
 static abbe_result load_document(const char *path, const abbe_scene_options *options,
@@ -340,34 +335,27 @@ abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
 
 static abbe_result read_changed(const char *path, const abbe_scene_options *options,
                                 abbe_yaml_edit *edit, abbe_error *error) {
-  char *text = NULL;
+  ABBE_FREED char *text = NULL;
   size_t bytes = 0;
-  abbe_result result = read_text(path, options, &text, &bytes, error);
-  if (result == ABBE_OK) result = change_text(text, bytes, path, options, edit, error);
-  free(text);
-  return result;
+  ABBE_TRY(read_text(path, options, &text, &bytes, error));
+  return change_text(text, bytes, path, options, edit, error);
 }
 
 abbe_result abbe_scene_text(const char *path, const abbe_scene_options *options, char **out,
                             size_t *size, abbe_error *error) {
-  abbe_yaml_edit edit = {0};
+  ABBE_OWNED(abbe_yaml_edit, edit) = {0};
   *out = NULL;
   *size = 0;
-  const abbe_result result = read_changed(path, options, &edit, error);
-  if (result == ABBE_OK) {
-    *out = edit.text;
-    *size = edit.size;
-    edit.text = NULL;
-  }
-  abbe_yaml_edit_free(&edit);
-  return result;
+  ABBE_TRY(read_changed(path, options, &edit, error));
+  *out = edit.text;
+  *size = edit.size;
+  edit.text = NULL;
+  return ABBE_OK;
 }
 
 abbe_result abbe_scene_number(const char *path, const abbe_scene_options *options, const char *key,
                               double *value, abbe_error *error) {
-  abbe_yaml_edit edit = {0};
-  abbe_result result = read_changed(path, options, &edit, error);
-  if (result == ABBE_OK) result = abbe_scene_change_number(&edit, key, value, error);
-  abbe_yaml_edit_free(&edit);
-  return result;
+  ABBE_OWNED(abbe_yaml_edit, edit) = {0};
+  ABBE_TRY(read_changed(path, options, &edit, error));
+  return abbe_scene_change_number(&edit, key, value, error);
 }

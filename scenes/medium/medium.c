@@ -15,12 +15,10 @@ static abbe_result read_pair(abbe_yaml *yaml, abbe_yaml_node pair, const char *k
   if (!abbe_yaml_is_sequence(yaml, pair) || abbe_yaml_count(yaml, pair) != 2)
     return abbe_yaml_fail(yaml, pair, error,
                           "a point of '%s' is [nm, per metre], such as [450, 0.3]", key);
-  abbe_result result = abbe_yaml_number(yaml, abbe_yaml_item(yaml, pair, 0), key,
-                                        ABBE_SPECTRUM_LOW_NM, ABBE_SPECTRUM_HIGH_NM, nm, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_number(yaml, abbe_yaml_item(yaml, pair, 1), key, 0, ABBE_MEDIUM_MOST_PER_M,
-                              per_m, error);
-  return result;
+  ABBE_TRY(abbe_yaml_number(yaml, abbe_yaml_item(yaml, pair, 0), key, ABBE_SPECTRUM_LOW_NM,
+                            ABBE_SPECTRUM_HIGH_NM, nm, error));
+  return abbe_yaml_number(yaml, abbe_yaml_item(yaml, pair, 1), key, 0, ABBE_MEDIUM_MOST_PER_M,
+                          per_m, error);
 }
 
 static abbe_result read_points(abbe_yaml *yaml, abbe_yaml_node list, const char *key,
@@ -63,11 +61,10 @@ static abbe_result read_corner(abbe_yaml *yaml, abbe_yaml_node corner, double ou
                                abbe_error *error) {
   if (!abbe_yaml_is_sequence(yaml, corner) || abbe_yaml_count(yaml, corner) != 3)
     return abbe_yaml_fail(yaml, corner, error, "a corner of 'box' is a point [x, y, z]");
-  abbe_result result = ABBE_OK;
-  for (size_t k = 0; k < 3 && result == ABBE_OK; k++)
-    result = abbe_yaml_number(yaml, abbe_yaml_item(yaml, corner, k), "box", -far_m, far_m, &out[k],
-                              error);
-  return result;
+  for (size_t k = 0; k < 3; k++)
+    ABBE_TRY(abbe_yaml_number(yaml, abbe_yaml_item(yaml, corner, k), "box", -far_m, far_m, &out[k],
+                              error));
+  return ABBE_OK;
 }
 
 static abbe_result read_box(abbe_yaml *yaml, abbe_yaml_node medium, abbe_medium *out,
@@ -80,15 +77,15 @@ static abbe_result read_box(abbe_yaml *yaml, abbe_yaml_node medium, abbe_medium 
   if (!abbe_yaml_is_sequence(yaml, box) || abbe_yaml_count(yaml, box) != 2)
     return abbe_yaml_fail(yaml, box, error,
                           "'box' wants two corners, such as [[-1, -1, 0], [1, 1, 2]]");
-  abbe_result result = read_corner(yaml, abbe_yaml_item(yaml, box, 0), out->min, error);
-  if (result == ABBE_OK) result = read_corner(yaml, abbe_yaml_item(yaml, box, 1), out->max, error);
-  for (int k = 0; k < 3 && result == ABBE_OK; k++)
+  ABBE_TRY(read_corner(yaml, abbe_yaml_item(yaml, box, 0), out->min, error));
+  ABBE_TRY(read_corner(yaml, abbe_yaml_item(yaml, box, 1), out->max, error));
+  for (int k = 0; k < 3; k++)
     if (!(out->min[k] < out->max[k]))
-      result = abbe_yaml_fail(yaml, box, error,
-                              "the 'box' reaches from %g to %g along %c; its first corner must be "
-                              "the lower one in each coordinate",
-                              out->min[k], out->max[k], "xyz"[k]);
-  return result;
+      return abbe_yaml_fail(yaml, box, error,
+                            "the 'box' reaches from %g to %g along %c; its first corner must be "
+                            "the lower one in each coordinate",
+                            out->min[k], out->max[k], "xyz"[k]);
+  return ABBE_OK;
 }
 
 /* ---- the whole ---- */
@@ -112,22 +109,21 @@ static abbe_result read_medium(abbe_yaml *yaml, abbe_yaml_node node, bool air, a
     return abbe_yaml_fail(yaml, node, error,
                           "'medium' wants a mapping, such as {scattering: 0.3, g: 0.5%s}",
                           air ? ", box: [[-1, -1, 0], [1, 1, 2]]" : "");
-  abbe_result result = read_coefficient(yaml, node, "scattering", &out->scattering, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "g", -1, 1, &out->g, error);
-  if (result == ABBE_OK && fabs(out->g) >= 1)
-    result = abbe_yaml_fail(yaml, abbe_yaml_get(yaml, node, "g"), error,
-                            "'g: %g' must lie between -1 and 1; at these nothing would be turned",
-                            out->g);
-  if (result == ABBE_OK && !air) result = refuse_inside(yaml, node, error);
-  if (result == ABBE_OK && air)
-    result = read_coefficient(yaml, node, "absorption", &out->absorption, error);
-  if (result == ABBE_OK && air) result = read_box(yaml, node, out, error);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "a 'medium'", error);
-  if (result == ABBE_OK && out->scattering == NULL && out->absorption == NULL)
-    result = abbe_yaml_fail(yaml, node, error,
-                            "this 'medium' does nothing; give it a 'scattering' per metre%s",
-                            air ? ", an 'absorption', or both" : "");
-  return result;
+  ABBE_TRY(read_coefficient(yaml, node, "scattering", &out->scattering, error));
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "g", -1, 1, &out->g, error));
+  if (fabs(out->g) >= 1)
+    return abbe_yaml_fail(yaml, abbe_yaml_get(yaml, node, "g"), error,
+                          "'g: %g' must lie between -1 and 1; at these nothing would be turned",
+                          out->g);
+  if (!air) ABBE_TRY(refuse_inside(yaml, node, error));
+  if (air) ABBE_TRY(read_coefficient(yaml, node, "absorption", &out->absorption, error));
+  if (air) ABBE_TRY(read_box(yaml, node, out, error));
+  ABBE_TRY(abbe_yaml_check_keys(yaml, node, "a 'medium'", error));
+  if (out->scattering == NULL && out->absorption == NULL)
+    return abbe_yaml_fail(yaml, node, error,
+                          "this 'medium' does nothing; give it a 'scattering' per metre%s",
+                          air ? ", an 'absorption', or both" : "");
+  return ABBE_OK;
 }
 
 abbe_result abbe_medium_file_read(abbe_yaml *yaml, abbe_yaml_node mapping, bool air,

@@ -184,11 +184,10 @@ static abbe_result run_steps(abbe_mesh *mesh, fixing *done, abbe_error *error) {
   drop_repeated(mesh, done);
   if (mesh->face_count == 0)
     return abbe_error_set(error, ABBE_GEOMETRY, "the mesh has no face with an area");
-  abbe_result result = abbe_mesh_drop_doubles(mesh, &done->doubles, error);
-  if (result == ABBE_OK) result = make_consistent(mesh, done, error);
-  if (result == ABBE_OK) result = flip_slivers(mesh, done, error);
-  if (result == ABBE_OK) result = abbe_mesh_close_holes(mesh, &done->holes, &done->widest, error);
-  return result;
+  ABBE_TRY(abbe_mesh_drop_doubles(mesh, &done->doubles, error));
+  ABBE_TRY(make_consistent(mesh, done, error));
+  ABBE_TRY(flip_slivers(mesh, done, error));
+  return abbe_mesh_close_holes(mesh, &done->holes, &done->widest, error);
 }
 
 static abbe_result refuse(const abbe_mesh_report *r, abbe_error *error) {
@@ -334,22 +333,19 @@ static abbe_result fixed_normals(const abbe_mesh *from, const abbe_topology *t, 
 
 /* The steps over a mesh of one vertex a point, which it leaves in *work. */
 static abbe_result fix(const abbe_topology *t, fixing *done, abbe_mesh *work, abbe_error *error) {
-  abbe_topology own = {0};
-  abbe_result result = welded(t, work, error);
-  if (result == ABBE_OK) result = run_steps(work, done, error);
-  if (result == ABBE_OK) result = abbe_topology_make(work, &own, error);
-  if (result == ABBE_OK) result = finish(work, &own, done, error);
-  abbe_topology_free(&own);
-  return result;
+  ABBE_OWNED(abbe_topology, own) = {0};
+  ABBE_TRY(welded(t, work, error));
+  ABBE_TRY(run_steps(work, done, error));
+  ABBE_TRY(abbe_topology_make(work, &own, error));
+  return finish(work, &own, done, error);
 }
 
 /* The mesh, or with its corners joined where that closes it, and the topology of that. */
 static abbe_result join(const abbe_mesh *mesh, abbe_mesh *joined, abbe_topology *t, fixing *done,
                         abbe_error *error) {
   abbe_topology own;
-  const abbe_result result =
-      abbe_mesh_join_corners(mesh, t, joined, &own, &done->joined, &done->apart, error);
-  if (result != ABBE_OK || done->joined == 0) return result;
+  ABBE_TRY(abbe_mesh_join_corners(mesh, t, joined, &own, &done->joined, &done->apart, error));
+  if (done->joined == 0) return ABBE_OK;
   abbe_topology_free(t);
   *t = own;
   return ABBE_OK;

@@ -193,16 +193,15 @@ static size_t number_corners(const abbe_mesh *mesh, const uint32_t *point,
 
 static abbe_result build(const abbe_mesh *mesh, const double (*corner)[3], const uint32_t *vertex,
                          const uint32_t *first, size_t count, abbe_mesh *out, abbe_error *error) {
-  const abbe_result result = abbe_mesh_make(count, mesh->face_count, mesh->uv != NULL, out, error);
-  for (size_t v = 0; result == ABBE_OK && v < count; v++) {
+  ABBE_TRY(abbe_mesh_make(count, mesh->face_count, mesh->uv != NULL, out, error));
+  for (size_t v = 0; v < count; v++) {
     const uint32_t from = mesh->face[first[v] / 3][first[v] % 3];
     memcpy(out->position[v], mesh->position[from], sizeof *out->position);
     memcpy(out->normal[v], corner[first[v]], sizeof *out->normal);
     if (mesh->uv) memcpy(out->uv[v], mesh->uv[from], sizeof *out->uv);
   }
-  for (size_t c = 0; result == ABBE_OK && c < 3 * mesh->face_count; c++)
-    out->face[c / 3][c % 3] = vertex[c];
-  return result;
+  for (size_t c = 0; c < 3 * mesh->face_count; c++) out->face[c / 3][c % 3] = vertex[c];
+  return ABBE_OK;
 }
 
 abbe_result abbe_mesh_take_normals(abbe_mesh *mesh, const uint32_t *point,

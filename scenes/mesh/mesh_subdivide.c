@@ -225,19 +225,17 @@ static abbe_result take_all(const abbe_mesh *mesh, const abbe_topology *t, const
         "the mesh has %zu parts that all cross one another, at (%.4g, %.4g, %.4g) "
         "for one; at most %u are followed: unite them in a modeller",
         s->solid_count, s->place[0], s->place[1], s->place[2], ABBE_MESH_MAX_SOLIDS);
-  uint32_t *number = malloc((mesh->vertex_count + 1) * sizeof *number);
+  ABBE_FREED uint32_t *number = malloc((mesh->vertex_count + 1) * sizeof *number);
   *part = calloc(s->solid_count, sizeof **part);
-  abbe_result result =
-      number && *part ? ABBE_OK
-                      : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the parts of a mesh");
-  for (uint32_t i = 0; i < s->solid_count && result == ABBE_OK; i++) {
+  if (!(number && *part))
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the parts of a mesh");
+  for (uint32_t i = 0; i < s->solid_count; i++) {
     *count = i + 1;
-    result = take_solid(mesh, t, s, i, number, &(*part)[i], error);
-    if (result == ABBE_OK && s->flush_count > 0 && i > 0)
-      result = grow(&(*part)[i], GROWTH * i * abbe_mesh_diagonal(mesh, NULL), error);
+    ABBE_TRY(take_solid(mesh, t, s, i, number, &(*part)[i], error));
+    if (s->flush_count > 0 && i > 0)
+      ABBE_TRY(grow(&(*part)[i], GROWTH * i * abbe_mesh_diagonal(mesh, NULL), error));
   }
-  free(number);
-  return result;
+  return ABBE_OK;
 }
 
 abbe_result abbe_mesh_split(const abbe_mesh *mesh, abbe_mesh **part, size_t *count,

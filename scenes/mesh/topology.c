@@ -289,29 +289,24 @@ static void unite_points(const abbe_topology *t, uint32_t *parent, uint32_t *at_
 
 static abbe_result find_shells(abbe_topology *t, abbe_error *error) {
   const size_t most = (t->face_count > t->point_count ? t->face_count : t->point_count) + 1;
-  uint32_t *parent = malloc(most * sizeof *parent);
-  uint32_t *number = malloc(most * sizeof *number);
-  abbe_result result =
-      parent && number ? ABBE_OK
-                       : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the parts of a mesh");
-  for (size_t f = 0; result == ABBE_OK && f < t->face_count; f++) parent[f] = (uint32_t)f;
-  for (size_t e = 0; result == ABBE_OK && e < t->edge_count; e++)
+  ABBE_FREED uint32_t *parent = malloc(most * sizeof *parent);
+  ABBE_FREED uint32_t *number = malloc(most * sizeof *number);
+  if (!(parent && number))
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the parts of a mesh");
+  for (size_t f = 0; f < t->face_count; f++) parent[f] = (uint32_t)f;
+  for (size_t e = 0; e < t->edge_count; e++)
     if (t->edge[e].along + t->edge[e].against == 2)
       abbe_disjoint_sets_unite(parent, t->edge[e].face[0], t->edge[e].face[1]);
-  if (result == ABBE_OK) result = unite_crowds(t, parent, error);
-  if (result == ABBE_OK) {
-    memset(number, 0xff, most * sizeof *number);
-    unite_points(t, parent, number);
-    memset(number, 0xff, most * sizeof *number);
-    for (size_t f = 0; f < t->face_count; f++) {
-      const uint32_t root = abbe_disjoint_sets_find(parent, (uint32_t)f);
-      if (number[root] == ABBE_TOPOLOGY_NONE) number[root] = (uint32_t)t->shell_count++;
-      t->shell[f] = number[root];
-    }
+  ABBE_TRY(unite_crowds(t, parent, error));
+  memset(number, 0xff, most * sizeof *number);
+  unite_points(t, parent, number);
+  memset(number, 0xff, most * sizeof *number);
+  for (size_t f = 0; f < t->face_count; f++) {
+    const uint32_t root = abbe_disjoint_sets_find(parent, (uint32_t)f);
+    if (number[root] == ABBE_TOPOLOGY_NONE) number[root] = (uint32_t)t->shell_count++;
+    t->shell[f] = number[root];
   }
-  free(parent);
-  free(number);
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result check_input(const abbe_mesh *mesh, abbe_error *error) {

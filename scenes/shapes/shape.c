@@ -319,8 +319,7 @@ static void lathe_segment(const double (*profile)[2], size_t count, size_t i, si
 abbe_result abbe_shape_lathe(const double (*profile)[2], size_t count, size_t around,
                              abbe_mesh *out, abbe_error *error) {
   memset(out, 0, sizeof *out);
-  abbe_result result = check_profile(profile, count, around, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_profile(profile, count, around, error));
   const size_t segments = count - 1;
   const size_t points = (profile[0][0] == 0.0 ? 1u : 0u) + (profile[segments][0] == 0.0 ? 1u : 0u);
   ABBE_TRY(

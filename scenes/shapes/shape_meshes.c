@@ -128,10 +128,8 @@ static abbe_result check(const abbe_knot *k, abbe_error *error) {
 abbe_result abbe_knot_make(const abbe_knot *knot, abbe_mesh *out, abbe_error *error) {
   memset(out, 0, sizeof *out);
   const abbe_knot k = filled_in(knot);
-  abbe_result result = check(&k, error);
-  if (result == ABBE_OK)
-    result = abbe_mesh_make(k.along * k.across, 2 * k.along * k.across, false, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check(&k, error));
+  ABBE_TRY(abbe_mesh_make(k.along * k.across, 2 * k.along * k.across, false, out, error));
   size_t face = 0;
   for (size_t i = 0; i < k.along; i++)
     for (size_t j = 0; j < k.across; j++) {

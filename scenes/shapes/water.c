@@ -182,14 +182,13 @@ static abbe_result check_numbers(const abbe_water *w, abbe_error *error) {
     if (!isfinite(wave->amplitude) || !isfinite(wave->direction_rad) || !isfinite(wave->phase_rad))
       return refuse(error, "a wave of amplitude", wave->amplitude, "its numbers must be finite");
   }
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < w->drop_count && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < w->drop_count; i++) {
     const abbe_water_drop *drop = &w->drop[i];
-    result = check_crater(drop->depth, drop->radius, error);
-    if (result == ABBE_OK && !(isfinite(drop->at[0] + drop->at[1] + drop->time)))
-      result = refuse(error, "a drop at", drop->at[0], "its place and time must be finite");
+    ABBE_TRY(check_crater(drop->depth, drop->radius, error));
+    if (!(isfinite(drop->at[0] + drop->at[1] + drop->time)))
+      ABBE_TRY(refuse(error, "a drop at", drop->at[0], "its place and time must be finite"));
   }
-  if (result != ABBE_OK || w->rain.every == 0) return result;
+  if (w->rain.every == 0) return ABBE_OK;
   if (!is_above(w->rain.every))
     return refuse(error, "rain every", w->rain.every, "seconds between drops are above zero");
   if (fabs(w->time) / w->rain.every > 1e12)

@@ -226,18 +226,15 @@ static abbe_result set_camera(building *b, abbe_error *error) {
 static abbe_result scale(building *b, abbe_yaml_node (*of)(const building *b, size_t i), size_t i,
                          const char *key, size_t count, double factor, abbe_error *error) {
   double v[3];
-  char *text = NULL;
+  ABBE_FREED char *text = NULL;
   if (pair_of(b, of(b, i), key) == SIZE_MAX) return ABBE_OK;
-  abbe_result result =
-      count == 1 ? abbe_yaml_get_length(b->edit.yaml, of(b, i), key, 0, HUGE_VAL, v, error)
-                 : abbe_yaml_get_lengths(b->edit.yaml, of(b, i), key, count, -HUGE_VAL, HUGE_VAL, v,
-                                         error);
+  ABBE_TRY(count == 1 ? abbe_yaml_get_length(b->edit.yaml, of(b, i), key, 0, HUGE_VAL, v, error)
+                      : abbe_yaml_get_lengths(b->edit.yaml, of(b, i), key, count, -HUGE_VAL,
+                                              HUGE_VAL, v, error));
   for (size_t k = 0; k < count; k++) v[k] *= factor;
-  if (result == ABBE_OK) result = abbe_yaml_edit_list(v, count, &text, error);
-  if (result == ABBE_OK && count == 1) text[strlen(text) - 1] = '\0'; /* no brackets */
-  if (result == ABBE_OK) result = put(b, of(b, i), key, text + (count == 1), error);
-  free(text);
-  return result;
+  ABBE_TRY(abbe_yaml_edit_list(v, count, &text, error));
+  if (count == 1) text[strlen(text) - 1] = '\0'; /* no brackets */
+  return put(b, of(b, i), key, text + (count == 1), error);
 }
 
 static abbe_yaml_node light_of(const building *b, size_t i) {
@@ -258,15 +255,14 @@ static abbe_result set_size(building *b, abbe_error *error) {
   const double high = finger ? 2 * (BAND_M + WIRE_M) : 0;
   const double factor = fmax(across, fmax(b->high, high)) / ROOM_M;
   if (factor <= 1) return ABBE_OK;
-  abbe_result result = ABBE_OK;
   for (size_t i = 0; i < abbe_yaml_count(b->edit.yaml, value_of(b, "lights")); i++) {
-    if (result == ABBE_OK) result = scale(b, light_of, i, "position", 3, factor, error);
-    if (result == ABBE_OK) result = scale(b, light_of, i, "radius", 1, factor, error);
-    if (result == ABBE_OK) result = scale(b, light_of, i, "intensity", 1, factor * factor, error);
+    ABBE_TRY(scale(b, light_of, i, "position", 3, factor, error));
+    ABBE_TRY(scale(b, light_of, i, "radius", 1, factor, error));
+    ABBE_TRY(scale(b, light_of, i, "intensity", 1, factor * factor, error));
   }
-  if (result != ABBE_OK || b->studio->with == ABBE_STUDIO_WITH_NONE) return result;
-  result = scale(b, table_of, 0, "width", 1, factor, error);
-  return result == ABBE_OK ? scale(b, table_of, 0, "height", 1, factor, error) : result;
+  if (b->studio->with == ABBE_STUDIO_WITH_NONE) return ABBE_OK;
+  ABBE_TRY(scale(b, table_of, 0, "width", 1, factor, error));
+  return scale(b, table_of, 0, "height", 1, factor, error);
 }
 
 static abbe_result describe(building *b, abbe_error *error) {
@@ -292,32 +288,30 @@ static abbe_result describe(building *b, abbe_error *error) {
 static abbe_result compose(building *b, abbe_error *error) {
   const abbe_studio_with with = b->studio->with;
   arrange(b);
-  abbe_result result =
-      with == ABBE_STUDIO_WITH_RING && b->studio->setting == 0 ? add_ring(b, error) : ABBE_OK;
-  for (size_t i = 0; i < b->count && result == ABBE_OK; i++) result = add_stone(b, i, error);
+  ABBE_TRY(with == ABBE_STUDIO_WITH_RING && b->studio->setting == 0 ? add_ring(b, error) : ABBE_OK);
+  for (size_t i = 0; i < b->count; i++) ABBE_TRY(add_stone(b, i, error));
   /* the look's own goes last, for a list keeps its last item; `stone` is the first of that name */
-  if (result == ABBE_OK) result = take_out(b, "stone", error);
-  if (result == ABBE_OK && with == ABBE_STUDIO_WITH_NONE) result = take_out(b, "table", error);
-  if (result == ABBE_OK) result = set_size(b, error);
-  if (result == ABBE_OK) result = set_camera(b, error);
-  return result == ABBE_OK ? describe(b, error) : result;
+  ABBE_TRY(take_out(b, "stone", error));
+  if (with == ABBE_STUDIO_WITH_NONE) ABBE_TRY(take_out(b, "table", error));
+  ABBE_TRY(set_size(b, error));
+  ABBE_TRY(set_camera(b, error));
+  return describe(b, error);
 }
 
 /* What is asked for by name is looked up before it stands in a scene, whose lines nobody knows. */
 static abbe_result check_name(const building *b, const char *name, bool metal, abbe_error *error) {
-  abbe_material_table table = {0};
+  ABBE_OWNED(abbe_material_table, table) = {0};
   const abbe_material *found;
   if (name == NULL) return ABBE_OK;
-  abbe_result result = abbe_material_table_load_named(b->studio->table, &name, 1, &table, error);
-  if (result == ABBE_OK) result = abbe_material_table_find(&table, name, &found, error);
-  if (result == ABBE_OK && abbe_material_is_conductor(found) != metal)
-    result = abbe_error_set(error, ABBE_UNSUPPORTED,
-                            metal ? "'%s' is no metal; a ring is of one, such as gold or platinum"
-                                  : "'%s' is a metal; a stone is of something that light passes, "
-                                    "such as ruby ('abbe materials list')",
-                            name);
-  abbe_material_table_free(&table);
-  return result;
+  ABBE_TRY(abbe_material_table_load_named(b->studio->table, &name, 1, &table, error));
+  ABBE_TRY(abbe_material_table_find(&table, name, &found, error));
+  if (abbe_material_is_conductor(found) != metal)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          metal ? "'%s' is no metal; a ring is of one, such as gold or platinum"
+                                : "'%s' is a metal; a stone is of something that light passes, "
+                                  "such as ruby ('abbe materials list')",
+                          name);
+  return ABBE_OK;
 }
 
 static abbe_result check_names(const building *b, abbe_error *error) {

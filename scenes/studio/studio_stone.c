@@ -86,21 +86,17 @@ static abbe_result choose(double n, const abbe_studio *studio, abbe_studio_stone
 
 static abbe_result read_design(const char *path, const abbe_studio *studio, abbe_studio_stone *out,
                                abbe_error *error) {
-  abbe_cut cut = {0};
-  abbe_cut_polyhedron stone = {0};
+  ABBE_OWNED(abbe_cut, cut) = {0};
+  ABBE_OWNED(abbe_cut_polyhedron, stone) = {0};
   abbe_cut_measures m;
-  abbe_result result = abbe_cut_file_read_stone(path, ABBE_CUT_WELD, &cut, &stone, NULL, error);
-  if (result == ABBE_OK) {
-    abbe_cut_measures_make(&cut, &stone, &m);
-    out->width = studio->width_m > 0 ? studio->width_m : ABBE_STUDIO_WIDTH_M;
-    for (int k = 0; k < 3; k++) out->size[k] = (stone.max[k] - stone.min[k]) * out->width / m.width;
-    out->girdle =
-        (0.5 * (m.girdle_low + m.girdle_high) - stone.min[2]) / (stone.max[2] - stone.min[2]);
-    if (studio->material == NULL) result = choose(cut.refractive_index, studio, out, error);
-  }
-  abbe_cut_polyhedron_free(&stone);
-  abbe_cut_free(&cut);
-  return result;
+  ABBE_TRY(abbe_cut_file_read_stone(path, ABBE_CUT_WELD, &cut, &stone, NULL, error));
+  abbe_cut_measures_make(&cut, &stone, &m);
+  out->width = studio->width_m > 0 ? studio->width_m : ABBE_STUDIO_WIDTH_M;
+  for (int k = 0; k < 3; k++) out->size[k] = (stone.max[k] - stone.min[k]) * out->width / m.width;
+  out->girdle =
+      (0.5 * (m.girdle_low + m.girdle_high) - stone.min[2]) / (stone.max[2] - stone.min[2]);
+  if (studio->material == NULL) ABBE_TRY(choose(cut.refractive_index, studio, out, error));
+  return ABBE_OK;
 }
 
 /* A glTF's own stone, where it has one. */

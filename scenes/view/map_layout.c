@@ -195,13 +195,13 @@ static abbe_result write_all(abbe_map_layout *layout, abbe_image *image, abbe_er
     used += (size_t)snprintf(text + used, sizeof text - used, " %s", list[i].word);
     for (int k = 0; k < list[i].count; k++) used = append_number(text, used, list[i].value[k]);
   }
-  abbe_result result = abbe_image_set_attribute(image, view_name, text, error);
-  for (int axis = 0; axis < 2 && result == ABBE_OK; axis++) {
+  ABBE_TRY(abbe_image_set_attribute(image, view_name, text, error));
+  for (int axis = 0; axis < 2; axis++) {
     used = 0;
     for (int k = 0; k <= STEPS; k++) used = append_number(text, used, layout->knot[axis][k]);
-    result = abbe_image_set_attribute(image, warp_name[axis], text + 1, error);
+    ABBE_TRY(abbe_image_set_attribute(image, warp_name[axis], text + 1, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* Reads count numbers from *at on; false where one is missing. */

@@ -163,7 +163,7 @@ static abbe_result write_attributes(const abbe_caustic_volume *v, abbe_image *im
 
 /* Nine numbers a map. */
 static abbe_result write_maps(const abbe_body_symmetry *s, abbe_image *image, abbe_error *error) {
-  char *text = malloc(s->count * 9 * (ABBE_NUMBER_TEXT_SIZE + 1) + 1);
+  ABBE_FREED char *text = malloc(s->count * 9 * (ABBE_NUMBER_TEXT_SIZE + 1) + 1);
   size_t used = 0;
   if (text == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu maps", s->count);
@@ -172,9 +172,7 @@ static abbe_result write_maps(const abbe_body_symmetry *s, abbe_image *image, ab
     abbe_number_text(s->map[i / 9][i % 9], text + used);
     used += strlen(text + used);
   }
-  const abbe_result result = abbe_image_set_attribute(image, "abbe:volume_symmetry", text, error);
-  free(text);
-  return result;
+  return abbe_image_set_attribute(image, "abbe:volume_symmetry", text, error);
 }
 
 /* ---- writing ---- */
@@ -194,18 +192,15 @@ abbe_result abbe_volume_file_write(const char *path, const abbe_caustic_volume *
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%s: %zu nodes of %zu cells are more than a picture has pixels", path,
                           v->nodes.count, v->region.cells);
-  abbe_image image = {0};
-  abbe_result result = abbe_image_make(width, height, channels, names_of(v), &image, error);
-  for (size_t i = 0; result == ABBE_OK && i < total * channels; i++) {
+  ABBE_OWNED(abbe_image, image) = {0};
+  ABBE_TRY(abbe_image_make(width, height, channels, names_of(v), &image, error));
+  for (size_t i = 0; i < total * channels; i++) {
     const uint16_t *half = half_at(v, i / channels, i % channels);
     image.data[i] = half != NULL ? (float)abbe_half_value(*half) : 0;
   }
-  if (result == ABBE_OK) result = write_attributes(v, &image, error);
-  if (result == ABBE_OK && v->kind == ABBE_VOLUME_EXITS)
-    result = write_maps(&v->exits.symmetry, &image, error);
-  if (result == ABBE_OK) result = abbe_exr_write_half(path, &image, error);
-  abbe_image_free(&image);
-  return result;
+  ABBE_TRY(write_attributes(v, &image, error));
+  if (v->kind == ABBE_VOLUME_EXITS) ABBE_TRY(write_maps(&v->exits.symmetry, &image, error));
+  return abbe_exr_write_half(path, &image, error);
 }
 
 /* ---- reading ---- */
@@ -399,16 +394,14 @@ static abbe_result take_values(const char *path, const abbe_image *image, abbe_c
                                abbe_error *error) {
   const size_t channels = channels_of(v), pixels = image->width * image->height;
   size_t from[ABBE_EXIT_HALVES];
-  abbe_result result = find_channels(path, image, v, from, error);
-  if (result == ABBE_OK && v->kind == ABBE_VOLUME_EXITS) /* these give the number of exits */
-    result = read_points(path, image, from, v, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(find_channels(path, image, v, from, error));
+  if (v->kind == ABBE_VOLUME_EXITS) /* these give the number of exits */
+    ABBE_TRY(read_points(path, image, from, v, error));
   const size_t total = total_of(v);
   if (pixels < total || pixels - total >= image->width)
     return abbe_error_set(error, ABBE_PARSE, "%s: %zu pixels; its attributes ask for %zu", path,
                           pixels, total);
-  if (v->kind != ABBE_VOLUME_EXITS) result = abbe_caustic_volume_allocate(v, error);
-  if (result != ABBE_OK) return result;
+  if (v->kind != ABBE_VOLUME_EXITS) ABBE_TRY(abbe_caustic_volume_allocate(v, error));
   for (size_t i = 0; i < total * channels; i++) {
     const size_t c = i % channels;
     const double x = (double)image->data[i - c + from[c]];

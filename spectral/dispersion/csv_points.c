@@ -381,10 +381,8 @@ abbe_result abbe_csv_points_parse(const char *text, size_t size, const char *nam
 abbe_result abbe_csv_points_load(const char *path, const abbe_csv_options *options,
                                  abbe_csv_points *out, abbe_report *report, abbe_error *error) {
   *out = (abbe_csv_points){0};
-  char *text = NULL;
+  ABBE_FREED char *text = NULL;
   size_t size = 0;
   ABBE_TRY(abbe_file_read_text(path, MAX_BYTES, &text, &size, error));
-  abbe_result result = abbe_csv_points_parse(text, size, path, options, out, report, error);
-  free(text);
-  return result;
+  return abbe_csv_points_parse(text, size, path, options, out, report, error);
 }

@@ -49,10 +49,6 @@ typedef struct abbe_index_shift {
   double thermal[6]; /* D0, D1, D2, E0, E1, lambda_tk (um) */
 } abbe_index_shift;
 
-/* A catalogue's n relative to the air that is there; infinite at lambda_tk. Exactly 1 is the air's
- * own and stays. */
-double abbe_index_shift_n(const abbe_index_shift *shift, double n, double lambda_nm);
-
 /* X(code, name in files, formula); c[0], c[1], … are the coefficients, L is lambda in um. */
 #define ABBE_DISPERSION_MODELS(X)                                                                  \
   X(CONSTANT, "constant", "n = c0")                                                                \

@@ -117,12 +117,10 @@ abbe_result abbe_index_points_parse(const char *text, size_t size, const char *n
 
 abbe_result abbe_index_points_load(const char *path, abbe_index_points *out, abbe_error *error) {
   *out = (abbe_index_points){0};
-  char *text = NULL;
+  ABBE_FREED char *text = NULL;
   size_t size = 0;
-  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &text, &size, error);
-  if (result == ABBE_OK) result = abbe_index_points_parse(text, size, path, out, error);
-  free(text);
-  return result;
+  ABBE_TRY(abbe_file_read_text(path, MAX_BYTES, &text, &size, error));
+  return abbe_index_points_parse(text, size, path, out, error);
 }
 
 abbe_result abbe_index_difference_of_points(const abbe_dispersion *a,
@@ -159,12 +157,9 @@ abbe_result abbe_index_difference_of_points(const abbe_dispersion *a,
 abbe_result abbe_index_difference_of_curves(const abbe_dispersion *a, const abbe_dispersion *b,
                                             double min_nm, double max_nm,
                                             abbe_index_difference *out, abbe_error *error) {
-  abbe_index_points points;
-  abbe_result result = abbe_index_points_sample(b, min_nm, max_nm, 401, 4001, &points, error);
-  if (result == ABBE_OK)
-    result = abbe_index_difference_of_points(a, &points, min_nm, max_nm, out, error);
-  abbe_index_points_free(&points);
-  return result;
+  ABBE_OWNED(abbe_index_points, points) = {0};
+  ABBE_TRY(abbe_index_points_sample(b, min_nm, max_nm, 401, 4001, &points, error));
+  return abbe_index_difference_of_points(a, &points, min_nm, max_nm, out, error);
 }
 
 /* 1/2 at the violet end, -1/2 at the red one. */

@@ -54,7 +54,8 @@ abbe_result abbe_points_sort(abbe_points *points, size_t *dropped, abbe_error *e
   qsort(list, points->count, sizeof *list, by_wavelength);
   size_t kept = 0;
   for (size_t i = 0; i < points->count; i++) {
-    bool again = dropped != NULL && kept > 0 && list[i].point.lambda_nm == points->point[kept - 1].lambda_nm;
+    bool again =
+        dropped != NULL && kept > 0 && list[i].point.lambda_nm == points->point[kept - 1].lambda_nm;
     if (!again) points->point[kept++] = list[i].point;
   }
   free(list);
@@ -65,7 +66,7 @@ abbe_result abbe_points_sort(abbe_points *points, size_t *dropped, abbe_error *e
 
 abbe_result abbe_points_spectrum(const abbe_points *points, abbe_interpolation interpolation,
                                  abbe_spectrum **out, abbe_error *error) {
-  double *lambda_nm = malloc((2 * points->count + 1) * sizeof *lambda_nm);
+  ABBE_FREED double *lambda_nm = malloc((2 * points->count + 1) * sizeof *lambda_nm);
   if (lambda_nm == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu points", points->count);
   double *value = lambda_nm + points->count;
@@ -73,8 +74,5 @@ abbe_result abbe_points_spectrum(const abbe_points *points, abbe_interpolation i
     lambda_nm[i] = points->point[i].lambda_nm;
     value[i] = points->point[i].value;
   }
-  abbe_result result =
-      abbe_spectrum_make(lambda_nm, value, points->count, interpolation, out, error);
-  free(lambda_nm);
-  return result;
+  return abbe_spectrum_make(lambda_nm, value, points->count, interpolation, out, error);
 }

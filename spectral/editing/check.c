@@ -228,12 +228,11 @@ static int by_row_and_kind(const void *a, const void *b) {
 abbe_result abbe_check_table(const abbe_material_table *table, const abbe_material_table *known,
                              abbe_findings *findings, abbe_error *error) {
   size_t before = findings->count;
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < table->count && result == ABBE_OK; i++)
-    result = check(&table->material[i], i, known, findings, error);
-  if (result == ABBE_OK) result = abbe_check_compare_rows(table, findings, error);
-  if (result == ABBE_OK && findings->count > before)
+  for (size_t i = 0; i < table->count; i++)
+    ABBE_TRY(check(&table->material[i], i, known, findings, error));
+  ABBE_TRY(abbe_check_compare_rows(table, findings, error));
+  if (findings->count > before)
     qsort(findings->finding + before, findings->count - before, sizeof *findings->finding,
           by_row_and_kind);
-  return result;
+  return ABBE_OK;
 }

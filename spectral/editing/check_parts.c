@@ -225,7 +225,7 @@ static abbe_result compare_indices(place *places, size_t count, abbe_findings *f
 
 abbe_result abbe_check_compare_rows(const abbe_material_table *table, abbe_findings *findings,
                                     abbe_error *error) {
-  place *places = malloc((table->count + 1) * sizeof *places);
+  ABBE_FREED place *places = malloc((table->count + 1) * sizeof *places);
   if (places == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to compare rows");
   for (size_t i = 0; i < table->count; i++) {
     const abbe_material *m = &table->material[i];
@@ -235,8 +235,6 @@ abbe_result abbe_check_compare_rows(const abbe_material_table *table, abbe_findi
       places[i].n[k] = told ? abbe_dispersion_n(&m->dispersion, lines_nm[k]) : NAN;
     }
   }
-  abbe_result result = compare_names(places, table->count, findings, error);
-  if (result == ABBE_OK) result = compare_indices(places, table->count, findings, error);
-  free(places);
-  return result;
+  ABBE_TRY(compare_names(places, table->count, findings, error));
+  return compare_indices(places, table->count, findings, error);
 }

@@ -130,31 +130,25 @@ abbe_result abbe_table_edit_set(abbe_table_edit *edit, const char *name, const c
   abbe_table_place p;
   ABBE_TRY(abbe_table_place_key(&edit->yaml, name, key, &p, error));
   if (p.found) return abbe_yaml_edit_replace(&edit->yaml, p.parent, p.index, value, error);
-  char *whole = nested(p.rest, value);
+  ABBE_FREED char *whole = nested(p.rest, value);
   if (whole == NULL) return no_memory(error, edit->yaml.name);
   size_t after =
       p.in_record ? abbe_table_place_after(edit->yaml.yaml, p.parent, p.rest) : ABBE_YAML_EDIT_END;
-  abbe_result result =
-      abbe_yaml_edit_insert_pair(&edit->yaml, p.parent, after, p.rest, whole, error);
-  free(whole);
-  return result;
+  return abbe_yaml_edit_insert_pair(&edit->yaml, p.parent, after, p.rest, whole, error);
 }
 
 abbe_result abbe_table_edit_set_text(abbe_table_edit *edit, const char *name, const char *key,
                                      const char *text, abbe_error *error) {
-  char *quoted = NULL;
-  abbe_result result = abbe_yaml_quote_make(text, &quoted, error);
-  if (result == ABBE_OK) result = abbe_table_edit_set(edit, name, key, quoted, error);
-  free(quoted);
-  return result;
+  ABBE_FREED char *quoted = NULL;
+  ABBE_TRY(abbe_yaml_quote_make(text, &quoted, error));
+  return abbe_table_edit_set(edit, name, key, quoted, error);
 }
 
 abbe_result abbe_table_edit_unset(abbe_table_edit *edit, const char *name, const char *key,
                                   abbe_error *error) {
   abbe_table_place p;
-  abbe_result result = abbe_table_place_key(&edit->yaml, name, key, &p, error);
-  if (result == ABBE_OK && !p.found) result = abbe_table_place_none(&edit->yaml, name, key, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_table_place_key(&edit->yaml, name, key, &p, error));
+  if (!p.found) ABBE_TRY(abbe_table_place_none(&edit->yaml, name, key, error));
   return abbe_yaml_edit_remove(&edit->yaml, p.parent, p.index, error);
 }
 
@@ -199,11 +193,9 @@ abbe_result abbe_table_edit_record(abbe_table_edit *edit, const char *name, char
 /* ---- what becomes of them ---- */
 
 abbe_result abbe_table_edit_check(const abbe_table_edit *edit, abbe_error *error) {
-  abbe_material_table table;
-  abbe_result result =
-      abbe_material_table_parse(edit->yaml.text, edit->yaml.size, edit->yaml.name, &table, error);
-  abbe_material_table_free(&table);
-  return result;
+  ABBE_OWNED(abbe_material_table, table) = {0};
+  return abbe_material_table_parse(edit->yaml.text, edit->yaml.size, edit->yaml.name, &table,
+                                   error);
 }
 
 static abbe_result check_unchanged(const abbe_table_edit *edit, abbe_error *error) {
@@ -318,24 +310,20 @@ static abbe_result pass(abbe_table_edit *edit, const abbe_material_table *known,
                         abbe_table_fix *out, size_t *set, abbe_error *error) {
   size_t size = 0;
   const char *text = abbe_table_edit_text(edit, &size);
-  abbe_material_table table;
-  abbe_findings found = {0};
+  ABBE_OWNED(abbe_material_table, table) = {0};
+  ABBE_OWNED(abbe_findings, found) = {0};
   ABBE_TRY(abbe_material_table_parse_lenient(text, size, "the table", &table, NULL, error));
-  abbe_result result = abbe_check_table(&table, known, &found, error);
-  if (result == ABBE_OK) result = apply(edit, &table, &found, out, set, error);
-  abbe_findings_free(&found);
-  abbe_material_table_free(&table);
-  return result;
+  ABBE_TRY(abbe_check_table(&table, known, &found, error));
+  return apply(edit, &table, &found, out, set, error);
 }
 
 abbe_result abbe_table_fix_make(abbe_table_edit *edit, const abbe_material_table *known,
                                 abbe_table_fix *out, abbe_error *error) {
   *out = (abbe_table_fix){0};
   size_t set = 1;
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < MAX_PASSES && set > 0 && result == ABBE_OK; i++) {
+  for (int i = 0; i < MAX_PASSES && set > 0; i++) {
     set = 0;
-    result = pass(edit, known, out, &set, error);
+    ABBE_TRY(pass(edit, known, out, &set, error));
   }
-  return result;
+  return ABBE_OK;
 }

@@ -28,6 +28,7 @@ abbe_result abbe_table_edit_make(const char *path, abbe_table_edit **out, abbe_e
 abbe_result abbe_table_edit_parse(const char *text, size_t size, const char *name,
                                   abbe_table_edit **out, abbe_error *error);
 void abbe_table_edit_free(abbe_table_edit *edit);
+ABBE_HOLDS(abbe_table_edit)
 
 /* The file's text with the changes, owned by the edit, until the next change. */
 const char *abbe_table_edit_text(const abbe_table_edit *edit, size_t *size);
@@ -76,8 +77,6 @@ abbe_result abbe_table_place_list(const abbe_yaml_edit *edit, size_t *index, abb
 /* That list; absent where there is none. */
 abbe_yaml_node abbe_table_place_records(const abbe_yaml_edit *edit);
 
-/* The name of a record, or "". */
-const char *abbe_table_place_name(const abbe_yaml *yaml, abbe_yaml_node record);
 /* The record of that name, whatever the case, and its index in the list. ABBE_NOT_FOUND names the
  * nearest; ABBE_INVALID_ARGUMENT where two have it; ABBE_UNSUPPORTED for an alias. */
 abbe_result abbe_table_place_record(const abbe_yaml_edit *edit, const char *name, size_t *index,

@@ -35,7 +35,8 @@ static size_t find_pair(const abbe_yaml *yaml, abbe_yaml_node mapping, const cha
   return i;
 }
 
-const char *abbe_table_place_name(const abbe_yaml *yaml, abbe_yaml_node record) {
+/* The name of a record, or "". */
+static const char *table_place_name(const abbe_yaml *yaml, abbe_yaml_node record) {
   size_t index = find_pair(yaml, record, "name");
   const char *name = abbe_yaml_text(yaml, abbe_yaml_value(yaml, record, index));
   return name != NULL ? name : "";
@@ -49,7 +50,7 @@ static abbe_result not_found(const abbe_yaml_edit *edit, abbe_yaml_node list, co
   if (names == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory to edit it", edit->name);
   for (size_t i = 0; i < count; i++)
-    names[i] = abbe_table_place_name(yaml, abbe_yaml_item(yaml, list, i));
+    names[i] = table_place_name(yaml, abbe_yaml_item(yaml, list, i));
   const char *near = abbe_nearest_word(name, names, count);
   free(names);
   return abbe_error_set(error, ABBE_NOT_FOUND,
@@ -72,7 +73,7 @@ abbe_result abbe_table_place_record(const abbe_yaml_edit *edit, const char *name
   *record = (abbe_yaml_node){0};
   for (size_t i = 0; i < abbe_yaml_count(yaml, list); i++) {
     abbe_yaml_node item = abbe_yaml_item(yaml, list, i);
-    if (strcasecmp(abbe_table_place_name(yaml, item), name) != 0) continue;
+    if (strcasecmp(table_place_name(yaml, item), name) != 0) continue;
     if (record->id != 0)
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "%s: the name '%.80s' stands on lines %zu and %zu; give one of them "

@@ -217,9 +217,8 @@ static bool read_dispersion(reader *r, abbe_material *m, abbe_error *why) {
 static abbe_result take_glass(reader *r, abbe_material *m) {
   const glass *g = &r->glass;
   abbe_error why = {0};
-  abbe_result result = read_texts(r, m);
-  if (result == ABBE_OK) result = read_catalogue(r, m);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_texts(r, m));
+  ABBE_TRY(read_catalogue(r, m));
   m->line = g->line;
   bool good = read_dispersion(r, m, &why);
   if (good) {

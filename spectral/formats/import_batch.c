@@ -329,8 +329,7 @@ static abbe_result take_files(runner *r, abbe_error *error) {
 }
 
 static abbe_result take_named(runner *r, abbe_error *error) {
-  abbe_result result = take_files(r, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(take_files(r, error));
   if (r->strange > 0)
     abbe_report_add(r->report, ABBE_NOTE_SKIPPED, 0, NULL,
                     "%zu files in folders hold no materials; the first is %s", r->strange,

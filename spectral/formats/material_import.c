@@ -137,11 +137,9 @@ static abbe_result make_points(const abbe_csv_points *points, const char *path,
 static abbe_result parse_points(const char *bytes, size_t size, const char *path,
                                 const abbe_import_options *o, abbe_material *m, abbe_report *report,
                                 abbe_error *error) {
-  abbe_csv_points points;
-  abbe_result result = abbe_csv_points_parse(bytes, size, path, &o->csv, &points, report, error);
-  if (result == ABBE_OK) result = make_points(&points, path, o, m, report, error);
-  abbe_csv_points_free(&points);
-  return result;
+  ABBE_OWNED(abbe_csv_points, points) = {0};
+  ABBE_TRY(abbe_csv_points_parse(bytes, size, path, &o->csv, &points, report, error));
+  return make_points(&points, path, o, m, report, error);
 }
 
 /* ---- into the table ---- */
@@ -199,25 +197,19 @@ abbe_result abbe_import_parse(const char *bytes, size_t size, const char *path,
 }
 
 static abbe_result load_store(const char *path, abbe_material_table *into, abbe_error *error) {
-  abbe_material_table table;
-  abbe_result result = abbe_material_store_read(path, NULL, 0, NULL, &table, error);
-  for (size_t i = 0; i < table.count && result == ABBE_OK; i++)
-    result = abbe_material_check(&table.material[i], error);
-  if (result == ABBE_OK) result = abbe_material_table_move(&table, into, error);
-  abbe_material_table_free(&table);
-  return result;
+  ABBE_OWNED(abbe_material_table, table) = {0};
+  ABBE_TRY(abbe_material_store_read(path, NULL, 0, NULL, &table, error));
+  for (size_t i = 0; i < table.count; i++) ABBE_TRY(abbe_material_check(&table.material[i], error));
+  return abbe_material_table_move(&table, into, error);
 }
 
 abbe_result abbe_import_load(const char *path, const abbe_import_options *options,
                              abbe_material_table *into, abbe_report *report, abbe_error *error) {
-  char *bytes = NULL;
+  ABBE_FREED char *bytes = NULL;
   size_t size = 0;
   if (abbe_material_store_is(path)) return load_store(path, into, error);
-  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &bytes, &size, error);
-  if (result == ABBE_OK)
-    result = abbe_import_parse(bytes, size, path, options, into, report, error);
-  free(bytes);
-  return result;
+  ABBE_TRY(abbe_file_read_text(path, MAX_BYTES, &bytes, &size, error));
+  return abbe_import_parse(bytes, size, path, options, into, report, error);
 }
 
 abbe_result abbe_import_explain(const char *path, abbe_result result, abbe_error *error) {

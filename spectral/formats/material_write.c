@@ -324,13 +324,12 @@ static abbe_result write_formula(const abbe_material *m, const abbe_csv_sampling
                                  abbe_report *report, abbe_error *error) {
   abbe_csv_sampling s;
   double n = 0, middle = 0, worst = 0, before = NAN, last_nm = NAN;
-  abbe_result result = plan(m, asked, &s, error);
-  if (result == ABBE_OK) result = abbe_material_n(m, s.min_nm, &n, error);
-  if (result == ABBE_OK) result = abbe_material_n(m, s.max_nm, &n, error);
-  for (size_t i = 0; result == ABBE_OK; i++) {
+  ABBE_TRY(plan(m, asked, &s, error));
+  ABBE_TRY(abbe_material_n(m, s.min_nm, &n, error));
+  ABBE_TRY(abbe_material_n(m, s.max_nm, &n, error));
+  for (size_t i = 0;; i++) {
     double lambda_nm = abbe_number_tidy(fmin(s.min_nm + (double)i * s.step_nm, s.max_nm));
-    result = abbe_material_n(m, lambda_nm, &n, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_material_n(m, lambda_nm, &n, error));
     write_row(m, lambda_nm, n, to);
     /* halfway between two points a straight line is worst */
     if (i > 0 && abbe_material_n(m, (last_nm + lambda_nm) / 2, &middle, NULL) == ABBE_OK)
@@ -339,12 +338,11 @@ static abbe_result write_formula(const abbe_material *m, const abbe_csv_sampling
     last_nm = lambda_nm;
     if (lambda_nm >= s.max_nm) break;
   }
-  if (result == ABBE_OK)
-    abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
-                    "the formula is sampled every %g nm from %g to %g nm; straight lines between "
-                    "the points are off by up to %.2g",
-                    s.step_nm, s.min_nm, s.max_nm, worst);
-  return result;
+  abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
+                  "the formula is sampled every %g nm from %g to %g nm; straight lines between "
+                  "the points are off by up to %.2g",
+                  s.step_nm, s.min_nm, s.max_nm, worst);
+  return ABBE_OK;
 }
 
 static void note_losses(const abbe_material *m, abbe_report *report) {
@@ -367,8 +365,7 @@ static void note_losses(const abbe_material *m, abbe_report *report) {
 abbe_result abbe_csv_write(const abbe_material *material, const abbe_csv_sampling *sampling,
                            FILE *to, abbe_report *report, abbe_error *error) {
   const abbe_material *m = material;
-  abbe_result result = abbe_material_check(m, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_material_check(m, error));
   fprintf(to, "# %s; source: ", m->name);
   for (const char *c = m->source; *c != '\0'; c++) fputc((unsigned char)*c < 0x20 ? ' ' : *c, to);
   const bool metal = abbe_material_is_conductor(m);
@@ -377,8 +374,7 @@ abbe_result abbe_csv_write(const abbe_material *material, const abbe_csv_samplin
   if (metal) write_conductor(&m->dispersion, to);
   for (size_t i = 0; !metal && table != NULL && i < abbe_spectrum_count(table); i++)
     write_row(m, abbe_spectrum_lambda_nm(table)[i], abbe_spectrum_value(table)[i], to);
-  if (table == NULL) result = write_formula(m, sampling, to, report, error);
-  if (result != ABBE_OK) return result;
+  if (table == NULL) ABBE_TRY(write_formula(m, sampling, to, report, error));
   note_losses(m, report);
   if (fflush(to) == 0 && !ferror(to)) return ABBE_OK;
   return abbe_error_set(error, ABBE_IO, "%s: its points could not be written", m->name);

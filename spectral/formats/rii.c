@@ -140,12 +140,11 @@ static abbe_result take_row(reader *r, columns which, const double *row, size_t 
   bool inside = lambda_nm >= ABBE_SPECTRUM_LOW_NM && lambda_nm <= ABBE_SPECTRUM_HIGH_NM;
   bool n_good = !which.n || (n >= 1e-3 && n <= 1e3), k_good = !which.k || (k >= 0 && k <= 1e3);
   if (!inside || !n_good || !k_good) ++*odd;
-  abbe_result result = ABBE_OK;
   if (which.n && inside && n_good)
-    result = abbe_points_add(&r->n, (abbe_point){.lambda_nm = lambda_nm, .value = n}, r->error);
-  if (result == ABBE_OK && which.k && inside && k_good)
-    result = abbe_points_add(&r->k, (abbe_point){.lambda_nm = lambda_nm, .value = k}, r->error);
-  return result;
+    ABBE_TRY(abbe_points_add(&r->n, (abbe_point){.lambda_nm = lambda_nm, .value = n}, r->error));
+  if (which.k && inside && k_good)
+    ABBE_TRY(abbe_points_add(&r->k, (abbe_point){.lambda_nm = lambda_nm, .value = k}, r->error));
+  return ABBE_OK;
 }
 
 static abbe_result read_table(reader *r, abbe_yaml_node entry, columns which) {
@@ -448,13 +447,12 @@ static abbe_result read_file(reader *r, const char *path, const char *name) {
   abbe_yaml_node root = abbe_yaml_root(r->yaml);
   r->m->name = name != NULL ? strdup(name) : name_of(path);
   if (r->m->name == NULL) return abbe_error_set(r->error, ABBE_NO_MEMORY, "%s: no memory", path);
-  abbe_result result = read_data(r, root);
-  if (result == ABBE_OK) result = read_text(r, root, "REFERENCES", &r->m->source);
-  if (result == ABBE_OK) result = read_text(r, root, "COMMENTS", &r->m->comment);
-  if (result == ABBE_OK) result = read_conditions(r, root);
-  if (result == ABBE_OK) result = read_properties(r, root);
-  if (result == ABBE_OK) result = take_metal(r, root);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_data(r, root));
+  ABBE_TRY(read_text(r, root, "REFERENCES", &r->m->source));
+  ABBE_TRY(read_text(r, root, "COMMENTS", &r->m->comment));
+  ABBE_TRY(read_conditions(r, root));
+  ABBE_TRY(read_properties(r, root));
+  ABBE_TRY(take_metal(r, root));
   if (r->m->source == NULL) {
     char text[300];
     snprintf(text, sizeof text, "a file of refractiveindex.info without references, %.200s", path);

@@ -30,17 +30,13 @@ double abbe_absorption_k(double attenuation_per_m, double lambda_nm) {
  */
 static abbe_result converted(const abbe_points *from, double (*convert)(abbe_point, double),
                              double parameter, abbe_spectrum **out, abbe_error *error) {
-  abbe_points list = {0};
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < from->count && result == ABBE_OK; i++) {
+  ABBE_OWNED(abbe_points, list) = {0};
+  for (size_t i = 0; i < from->count; i++) {
     abbe_point p = from->point[i];
     p.value = convert(p, parameter);
-    result = abbe_points_add(&list, p, error);
+    ABBE_TRY(abbe_points_add(&list, p, error));
   }
-  if (result == ABBE_OK)
-    result = abbe_points_spectrum(&list, ABBE_INTERPOLATION_LINEAR, out, error);
-  abbe_points_free(&list);
-  return result;
+  return abbe_points_spectrum(&list, ABBE_INTERPOLATION_LINEAR, out, error);
 }
 
 static double of_transmittance(abbe_point p, double thickness_m) {

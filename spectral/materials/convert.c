@@ -226,8 +226,7 @@ abbe_result abbe_convert_judge(const abbe_given *given, abbe_fit_form form,
                           "the numbers %g and %g go with no material: %s; compare them with their "
                           "source, and their units",
                           given->first, given->second, why.text);
-  result = rounding_of(given, form, &made, min_nm, max_nm, &out->rounding, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(rounding_of(given, form, &made, min_nm, max_nm, &out->rounding, error));
   abbe_dispersion_numbers own = abbe_dispersion_describe(&made);
   size_t index[ABBE_CONVERT_COMPARED];
   size_t count = nearest_in_v_d(known, own.v_d, min_nm, max_nm, index);

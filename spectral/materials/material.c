@@ -133,13 +133,13 @@ static abbe_result check_order(const abbe_material *m, abbe_error *error) {
 
 static abbe_result check_index(const abbe_material *m, abbe_error *error) {
   if (abbe_material_is_conductor(m)) return ABBE_OK;
-  abbe_result result = check_curve(m, &m->dispersion, "", error);
-  if (result == ABBE_OK && abbe_material_is_biaxial(m)) {
-    result = check_curve(m, &m->outer[0], "alpha's ", error);
-    if (result == ABBE_OK) result = check_curve(m, &m->outer[1], "gamma's ", error);
-    if (result == ABBE_OK) result = check_order(m, error);
+  ABBE_TRY(check_curve(m, &m->dispersion, "", error));
+  if (abbe_material_is_biaxial(m)) {
+    ABBE_TRY(check_curve(m, &m->outer[0], "alpha's ", error));
+    ABBE_TRY(check_curve(m, &m->outer[1], "gamma's ", error));
+    ABBE_TRY(check_order(m, error));
   }
-  if (result != ABBE_OK || !abbe_material_is_uniaxial(m)) return result;
+  if (!abbe_material_is_uniaxial(m)) return ABBE_OK;
   return check_curve(m, &m->extraordinary, "extraordinary ", error);
 }
 
@@ -219,17 +219,17 @@ abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *
   abbe_error why;
   if (abbe_dispersion_check(&material->dispersion, &why) != ABBE_OK)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: %s", material->name, why.text);
-  abbe_result result = check_conductor(material, error);
-  if (result == ABBE_OK) result = check_extraordinary(material, error);
-  if (result == ABBE_OK) result = check_outer(material, error);
-  if (result == ABBE_OK) result = abbe_material_check_absorption(material, error);
-  if (result == ABBE_OK) result = abbe_material_check_fluorescence(material, error);
-  return result == ABBE_OK ? check_range(material, error) : result;
+  ABBE_TRY(check_conductor(material, error));
+  ABBE_TRY(check_extraordinary(material, error));
+  ABBE_TRY(check_outer(material, error));
+  ABBE_TRY(abbe_material_check_absorption(material, error));
+  ABBE_TRY(abbe_material_check_fluorescence(material, error));
+  return check_range(material, error);
 }
 
 abbe_result abbe_material_check(const abbe_material *material, abbe_error *error) {
-  abbe_result result = abbe_material_check_form(material, error);
-  return result == ABBE_OK ? check_index(material, error) : result;
+  ABBE_TRY(abbe_material_check_form(material, error));
+  return check_index(material, error);
 }
 
 /* ---- what it does to light ---- */

@@ -12,12 +12,9 @@
 static abbe_result read_colour(abbe_record_reading *r, abbe_yaml_node where, abbe_spectrum **out) {
   double colour[3] = {1, 1, 1}, distance_m = 0;
   abbe_yaml_node node;
-  abbe_result result = abbe_yaml_require(r->yaml, where, "distance_m", &node, r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(r->yaml, where, "distance_m", 1e-9, 1e9, &distance_m, r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_numbers(r->yaml, where, "colour", 3, 1e-6, 1, colour, r->error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_yaml_require(r->yaml, where, "distance_m", &node, r->error));
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, where, "distance_m", 1e-9, 1e9, &distance_m, r->error));
+  ABBE_TRY(abbe_yaml_get_numbers(r->yaml, where, "colour", 3, 1e-6, 1, colour, r->error));
   return abbe_absorption_spectrum_of_colour(colour, distance_m, out, r->error);
 }
 
@@ -32,38 +29,30 @@ static abbe_result read_attenuation(abbe_record_reading *r, abbe_yaml_node where
 /* Pairs into points, for what is converted. */
 static abbe_result read_list(abbe_record_reading *r, abbe_yaml_node where, const char *key,
                              double max, abbe_points *points) {
-  abbe_record_rows pairs = {.columns = 2};
-  abbe_result result =
-      abbe_record_rows_read(r, abbe_yaml_get(r->yaml, where, key), key, 0, max, &pairs);
-  for (size_t i = 0; result == ABBE_OK && i < pairs.count; i++)
-    result = abbe_points_add(
+  ABBE_OWNED(abbe_record_rows, pairs) = {.columns = 2};
+  ABBE_TRY(abbe_record_rows_read(r, abbe_yaml_get(r->yaml, where, key), key, 0, max, &pairs));
+  for (size_t i = 0; i < pairs.count; i++)
+    ABBE_TRY(abbe_points_add(
         points, (abbe_point){.lambda_nm = pairs.column[0][i], .value = pairs.column[1][i]},
-        r->error);
-  abbe_record_rows_free(&pairs);
-  return result;
+        r->error));
+  return ABBE_OK;
 }
 
 static abbe_result read_k(abbe_record_reading *r, abbe_yaml_node where, abbe_spectrum **out) {
-  abbe_points points = {0};
-  abbe_result result = read_list(r, where, "k", 1e3, &points);
-  if (result == ABBE_OK) result = abbe_absorption_spectrum_of_k(&points, out, r->error);
-  abbe_points_free(&points);
-  return result;
+  ABBE_OWNED(abbe_points, points) = {0};
+  ABBE_TRY(read_list(r, where, "k", 1e3, &points));
+  return abbe_absorption_spectrum_of_k(&points, out, r->error);
 }
 
 static abbe_result read_transmittance(abbe_record_reading *r, abbe_yaml_node where,
                                       abbe_spectrum **out) {
-  abbe_points points = {0};
+  ABBE_OWNED(abbe_points, points) = {0};
   double thickness_m = 0;
   abbe_yaml_node node;
-  abbe_result result = abbe_yaml_require(r->yaml, where, "thickness_m", &node, r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(r->yaml, where, "thickness_m", 1e-9, 1e9, &thickness_m, r->error);
-  if (result == ABBE_OK) result = read_list(r, where, "transmittance", 1, &points);
-  if (result == ABBE_OK)
-    result = abbe_absorption_spectrum_of_transmittance(&points, thickness_m, out, r->error);
-  abbe_points_free(&points);
-  return result;
+  ABBE_TRY(abbe_yaml_require(r->yaml, where, "thickness_m", &node, r->error));
+  ABBE_TRY(abbe_yaml_get_number(r->yaml, where, "thickness_m", 1e-9, 1e9, &thickness_m, r->error));
+  ABBE_TRY(read_list(r, where, "transmittance", 1, &points));
+  return abbe_absorption_spectrum_of_transmittance(&points, thickness_m, out, r->error);
 }
 
 /* The three kinds of absorption, and the keys that go with each. */
@@ -92,8 +81,7 @@ static abbe_result read_absorbed(abbe_record_reading *r, abbe_yaml_node where,
     /* a mistyped key is the likelier mistake, and explains more */
     static const char *const rest[] = {"distance_m", "thickness_m", "interpolation"};
     for (int i = 0; i < 3; i++) abbe_yaml_get(r->yaml, where, rest[i]);
-    abbe_result result = abbe_yaml_check_keys(r->yaml, where, "'absorption'", r->error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_yaml_check_keys(r->yaml, where, "'absorption'", r->error));
     return abbe_yaml_fail(r->yaml, where, r->error, "'absorption' wants one of " WAYS);
   }
   abbe_result result = ways[which].read(r, where, out);
@@ -135,14 +123,14 @@ static abbe_result read_pleochroism(abbe_record_reading *r, abbe_yaml_node where
   if (!xyz && abbe_material_is_biaxial(m))
     return abbe_yaml_fail(r->yaml, where, r->error,
                           "'absorption' of a biaxial crystal goes along 'x', 'y' and 'z'");
-  abbe_result result = read_axes(r, where, xyz ? three : two, xyz ? 3 : 2, xyz ? of_three : of_two);
-  if (result == ABBE_OK && *y != NULL && is_same(*y, m->attenuation)) {
+  ABBE_TRY(read_axes(r, where, xyz ? three : two, xyz ? 3 : 2, xyz ? of_three : of_two));
+  if (*y != NULL && is_same(*y, m->attenuation)) {
     abbe_spectrum_free(*y);
     *y = NULL;
   }
-  if (result == ABBE_OK && abbe_material_check_absorption(m, &why) != ABBE_OK)
+  if (abbe_material_check_absorption(m, &why) != ABBE_OK)
     return abbe_yaml_fail(r->yaml, where, r->error, "%s", why.text);
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result read_absorption(abbe_record_reading *r) {

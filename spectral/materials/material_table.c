@@ -156,8 +156,7 @@ static abbe_result read_records(abbe_yaml *yaml, abbe_yaml_node list, const mode
     abbe_yaml_node record = abbe_yaml_item(yaml, list, i);
     abbe_material *m = &t->material[t->count++]; /* counted now, so that half of one is freed too */
     if (!how->lenient) {
-      abbe_result result = abbe_material_record_read(yaml, record, m, error);
-      if (result != ABBE_OK) return result;
+      ABBE_TRY(abbe_material_record_read(yaml, record, m, error));
       continue;
     }
     abbe_error why = {0};

@@ -238,9 +238,7 @@ abbe_result abbe_glass_distance_to_curve(const abbe_material_table *table,
                                          size_t wanted, abbe_glass_distances *out,
                                          abbe_error *error) {
   *out = (abbe_glass_distances){0};
-  abbe_index_points points;
-  abbe_result result = abbe_index_points_sample(curve, min_nm, max_nm, 41, 401, &points, error);
-  if (result == ABBE_OK) result = abbe_glass_distance_to_points(table, &points, wanted, out, error);
-  abbe_index_points_free(&points);
-  return result;
+  ABBE_OWNED(abbe_index_points, points) = {0};
+  ABBE_TRY(abbe_index_points_sample(curve, min_nm, max_nm, 41, 401, &points, error));
+  return abbe_glass_distance_to_points(table, &points, wanted, out, error);
 }

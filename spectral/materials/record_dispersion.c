@@ -146,20 +146,19 @@ static abbe_result read_pairs(abbe_record_reading *r, abbe_yaml_node where, abbe
 
 static abbe_result read_tabulated(abbe_record_reading *r, abbe_yaml_node own) {
   abbe_material *m = r->material;
-  abbe_result result = read_pairs(r, own, &m->dispersion);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_pairs(r, own, &m->dispersion));
   const double *lambda_nm = abbe_spectrum_lambda_nm(m->dispersion.table);
   double low = lambda_nm[0], high = lambda_nm[abbe_spectrum_count(m->dispersion.table) - 1];
   m->min_nm = low;
   m->max_nm = high;
   if (abbe_yaml_get(r->yaml, r->record, "range_nm").id != 0)
-    result = abbe_record_read_range(r, r->record, "range_nm", &m->min_nm, &m->max_nm);
-  if (result == ABBE_OK && (m->min_nm < low || m->max_nm > high))
+    ABBE_TRY(abbe_record_read_range(r, r->record, "range_nm", &m->min_nm, &m->max_nm));
+  if ((m->min_nm < low || m->max_nm > high))
     return abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, r->record, "range_nm"), r->error,
                           "'range_nm: [%g, %g]' is wider than the points, which reach from %g to "
                           "%g nm",
                           m->min_nm, m->max_nm, low, high);
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result read_coefficients(abbe_record_reading *r, abbe_yaml_node where,
@@ -228,13 +227,12 @@ static abbe_result read_second(abbe_record_reading *r, abbe_yaml_node parent, co
                           key);
   static const char *const keys[] = {"model", "coefficients", "points", "interpolation"};
   for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) abbe_yaml_get(r->yaml, where, keys[i]);
-  abbe_result result = abbe_yaml_check_keys(r->yaml, where, what, r->error);
-  if (result == ABBE_OK) result = read_model(r, where, &d->model);
-  if (result == ABBE_OK && d->model == ABBE_DISPERSION_CONDUCTOR)
+  ABBE_TRY(abbe_yaml_check_keys(r->yaml, where, what, r->error));
+  ABBE_TRY(read_model(r, where, &d->model));
+  if (d->model == ABBE_DISPERSION_CONDUCTOR)
     return abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, where, "model"), r->error,
                           "'%s' is a real index; the model conductor has n and k", key);
-  if (result == ABBE_OK) result = check_idle_keys(r, where, d->model);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_idle_keys(r, where, d->model));
   return d->model == ABBE_DISPERSION_TABULATED ? read_pairs(r, where, d)
                                                : read_coefficients(r, where, d);
 }
@@ -285,14 +283,13 @@ static abbe_result find_own(abbe_record_reading *r, abbe_yaml_node *own) {
 abbe_result abbe_record_read_dispersion(abbe_record_reading *r) {
   abbe_dispersion *d = &r->material->dispersion;
   abbe_yaml_node own;
-  abbe_result result = find_own(r, &own);
-  if (result == ABBE_OK) result = read_model(r, own, &d->model);
-  if (result == ABBE_OK) result = check_idle_keys(r, r->record, d->model);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(find_own(r, &own));
+  ABBE_TRY(read_model(r, own, &d->model));
+  ABBE_TRY(check_idle_keys(r, r->record, d->model));
   bool points = d->model == ABBE_DISPERSION_TABULATED || d->model == ABBE_DISPERSION_CONDUCTOR;
-  result = points ? read_tabulated(r, own) : read_formula(r, own);
-  if (result == ABBE_OK) result = read_crystal(r);
-  if (result != ABBE_OK || r->lenient) return result;
+  ABBE_TRY(points ? read_tabulated(r, own) : read_formula(r, own));
+  ABBE_TRY(read_crystal(r));
+  if (r->lenient) return ABBE_OK;
   abbe_error why;
   if (abbe_material_check(r->material, &why) != ABBE_OK)
     return abbe_yaml_fail(r->yaml, r->record, r->error, "%s", why.text);

@@ -136,8 +136,8 @@ static abbe_result read_bytes(reader *r, abbe_store_column column, size_t group,
 static abbe_result read_numbers(reader *r, abbe_store_column column, size_t min, size_t max,
                                 double most, double *out, size_t *count) {
   const unsigned char *bytes;
-  abbe_result result = read_bytes(r, column, 1, &bytes, count);
-  if (result != ABBE_OK || *count == 0) return result;
+  ABBE_TRY(read_bytes(r, column, 1, &bytes, count));
+  if (*count == 0) return ABBE_OK;
   if (*count < min || *count > max) return damaged(r, column, "has another length");
   for (size_t i = 0; i < *count; i++) {
     out[i] = get_double(bytes + 8 * i);
@@ -160,29 +160,25 @@ static abbe_result read_spectrum(reader *r, abbe_store_column column,
   const unsigned char *bytes;
   size_t count;
   int kind = ABBE_INTERPOLATION_LINEAR;
-  abbe_result result = read_bytes(r, column, 2, &bytes, &count);
-  if (result == ABBE_OK) result = read_word(r, interpolation, interpolation_name, 3, &kind);
-  if (result != ABBE_OK || count == 0) return result;
+  ABBE_TRY(read_bytes(r, column, 2, &bytes, &count));
+  ABBE_TRY(read_word(r, interpolation, interpolation_name, 3, &kind));
+  if (count == 0) return ABBE_OK;
   if (count > ABBE_SPECTRUM_MAX_COUNT) return damaged(r, column, "has too many points");
-  double *lambda_nm = malloc(count * sizeof *lambda_nm), *value = malloc(count * sizeof *value);
-  if (lambda_nm == NULL || value == NULL) result = no_memory(r);
-  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+  ABBE_FREED double *lambda_nm = malloc(count * sizeof *lambda_nm),
+                    *value = malloc(count * sizeof *value);
+  if (lambda_nm == NULL || value == NULL) ABBE_TRY(no_memory(r));
+  for (size_t i = 0; i < count; i++) {
     lambda_nm[i] = get_double(bytes + 16 * i);
     value[i] = get_double(bytes + 16 * i + 8);
     if (!(lambda_nm[i] >= ABBE_SPECTRUM_LOW_NM && lambda_nm[i] <= ABBE_SPECTRUM_HIGH_NM &&
           value[i] >= min && value[i] <= max))
-      result = damaged(r, column, "holds a number out of its range");
+      ABBE_TRY(damaged(r, column, "holds a number out of its range"));
   }
   abbe_error why;
-  if (result == ABBE_OK)
-    result =
-        abbe_spectrum_make(lambda_nm, value, count, (abbe_interpolation)kind, out, &why) == ABBE_OK
-            ? ABBE_OK
-        : why.code == ABBE_NO_MEMORY ? no_memory(r)
-                                     : damaged(r, column, "does not ascend");
-  free(lambda_nm);
-  free(value);
-  return result;
+  return abbe_spectrum_make(lambda_nm, value, count, (abbe_interpolation)kind, out, &why) == ABBE_OK
+             ? ABBE_OK
+         : why.code == ABBE_NO_MEMORY ? no_memory(r)
+                                      : damaged(r, column, "does not ascend");
 }
 
 static abbe_result read_conductor(reader *r, abbe_dispersion *out) {
@@ -208,8 +204,8 @@ static abbe_result read_fit(reader *r, abbe_store_column column, size_t terms,
                             abbe_material_fit *out) {
   double value[ABBE_STORE_MAX_TERMS + 3];
   size_t count;
-  abbe_result result = read_numbers(r, column, terms + 3, terms + 3, 1e12, value, &count);
-  if (result != ABBE_OK || count == 0) return result;
+  ABBE_TRY(read_numbers(r, column, terms + 3, terms + 3, 1e12, value, &count));
+  if (count == 0) return ABBE_OK;
   *out = (abbe_material_fit){.terms = terms,
                              .max_error = value[terms],
                              .min_nm = value[terms + 1],
@@ -242,8 +238,8 @@ static abbe_result read_catalogue(reader *r) {
 /* An index: its model, numbers, how its points are joined, and those. */
 static abbe_result read_index(reader *r, const abbe_store_column column[4], abbe_dispersion *d) {
   int model = -1;
-  abbe_result result = read_word(r, column[0], model_name, ABBE_DISPERSION_MODEL_COUNT, &model);
-  if (result != ABBE_OK || model < 0) return result;
+  ABBE_TRY(read_word(r, column[0], model_name, ABBE_DISPERSION_MODEL_COUNT, &model));
+  if (model < 0) return ABBE_OK;
   d->model = (abbe_dispersion_model)model;
   ABBE_TRY(
       read_numbers(r, column[1], 1, ABBE_DISPERSION_MAX_COEFFICIENTS, INFINITY, d->c, &d->count));

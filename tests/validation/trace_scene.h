@@ -6,8 +6,6 @@
 
 #include "validation/trace/tracer/tracer.h"
 
-HOLDS(abbe_tracer);
-
 /* Two small balls: they fill few of the cells that a light is aimed by, so that a tracer is made
  * in a moment. */
 #define BEADS(material)                                                                            \

@@ -105,12 +105,11 @@ static void to_body(const fill *f, const float frame[3], double out[3]) {
 static abbe_result make_table(fill *f, abbe_error *error) {
   const abbe_volume_region *region = &f->volume->region;
   const size_t count = f->points.count;
-  abbe_exit_halves *half = calloc(count + 1, sizeof *half);
-  float *share = malloc((region->cells + 1) * sizeof *share);
-  abbe_result result = ABBE_OK;
+  ABBE_FREED abbe_exit_halves *half = calloc(count + 1, sizeof *half);
+  ABBE_FREED float *share = malloc((region->cells + 1) * sizeof *share);
   if (half == NULL || share == NULL)
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu points", count);
-  for (size_t i = 0; result == ABBE_OK && i < count; i++) {
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu points", count);
+  for (size_t i = 0; i < count; i++) {
     const abbe_exit_point *p = &f->points.point[i];
     double place[3];
     to_body(f, p->place, place);
@@ -118,18 +117,14 @@ static abbe_result make_table(fill *f, abbe_error *error) {
     for (int k = 0; k < 3; k++) half[i][ABBE_EXIT_NORMAL + k] = abbe_half_of((double)p->normal[k]);
     half[i][ABBE_EXIT_BIN] = abbe_half_of(p->bin);
   }
-  if (result == ABBE_OK)
-    result = abbe_light_exits_make(&f->volume->nodes, count, (const abbe_exit_halves *)half,
-                                   &f->symmetry, f->lone->body.radius, f->points.area,
-                                   region->cells, &f->volume->exits, error);
-  if (result == ABBE_OK)
-    result = abbe_volume_space_measure(&f->lone->geometry, region, f->lone->place.centre,
-                                       f->lone->body.radius, LINES, share, error);
-  for (size_t i = 0; result == ABBE_OK && i < region->cells; i++)
+  ABBE_TRY(abbe_light_exits_make(&f->volume->nodes, count, (const abbe_exit_halves *)half,
+                                 &f->symmetry, f->lone->body.radius, f->points.area, region->cells,
+                                 &f->volume->exits, error));
+  ABBE_TRY(abbe_volume_space_measure(&f->lone->geometry, region, f->lone->place.centre,
+                                     f->lone->body.radius, LINES, share, error));
+  for (size_t i = 0; i < region->cells; i++)
     f->volume->exits.space[i] = abbe_half_of((double)share[i]);
-  free(half);
-  free(share);
-  return result;
+  return ABBE_OK;
 }
 
 /* ---- the rays of a node ---- */

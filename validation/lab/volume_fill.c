@@ -78,18 +78,16 @@ static void resolve(const abbe_volume_body *body, double surface, abbe_volume_fi
 static abbe_result begin(const abbe_scene *scene, fill *f, abbe_error *error) {
   abbe_volume_fill_desc *d = &f->desc;
   abbe_caustic_volume *v = f->volume;
-  abbe_result result = abbe_lone_object_make(scene, d->object, d->light, &f->lone, error);
-  if (result == ABBE_OK) result = check_counts(d, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_lone_object_make(scene, d->object, d->light, &f->lone, error));
+  ABBE_TRY(check_counts(d, error));
   v->body = f->lone.body;
   resolve(&v->body, abbe_lone_object_depth(&f->lone), d);
   v->kind = d->exits > 0 ? ABBE_VOLUME_EXITS : d->kind;
   v->min_nm = d->min_nm;
   v->max_nm = d->max_nm;
-  result = abbe_volume_region_make(&d->region, &v->region, error);
-  if (result == ABBE_OK)
-    result = abbe_light_nodes_make(d->nodes, (const double[3]){0, 0, 1}, &v->nodes, error);
-  if (result != ABBE_OK || d->exits > 0) return result;
+  ABBE_TRY(abbe_volume_region_make(&d->region, &v->region, error));
+  ABBE_TRY(abbe_light_nodes_make(d->nodes, (const double[3]){0, 0, 1}, &v->nodes, error));
+  if (d->exits > 0) return ABBE_OK;
   return abbe_caustic_volume_allocate(v, error);
 }
 
@@ -117,12 +115,9 @@ static abbe_result make_tables(fill *f, abbe_error *error) {
                                                .max_nm = d->max_nm,
                                                .uniform = 0.15};
   const abbe_geometry *g = &f->lone.geometry;
-  abbe_result result = abbe_spectral_sampling_make(&f->lone.scene, &sampled, &f->sampling, error);
-  if (result == ABBE_OK)
-    result = abbe_media_make(g, f->sampling.lambda_nm, f->sampling.steps, &f->media, error);
-  if (result == ABBE_OK)
-    result = abbe_mirrors_make(g, f->sampling.lambda_nm, f->sampling.steps, &f->mirrors, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_spectral_sampling_make(&f->lone.scene, &sampled, &f->sampling, error));
+  ABBE_TRY(abbe_media_make(g, f->sampling.lambda_nm, f->sampling.steps, &f->media, error));
+  ABBE_TRY(abbe_mirrors_make(g, f->sampling.lambda_nm, f->sampling.steps, &f->mirrors, error));
   memcpy(f->volume->white, f->sampling.white[0], sizeof f->volume->white);
   f->colour = calloc(f->sampling.steps, sizeof *f->colour);
   f->space = calloc(f->volume->region.cells, sizeof *f->space);
@@ -130,15 +125,15 @@ static abbe_result make_tables(fill *f, abbe_error *error) {
   if (f->colour == NULL || f->space == NULL || f->worker == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a volume's tables");
   make_colours(f);
-  for (size_t i = 0; i < d->threads && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < d->threads; i++) {
     f->worker[i] = (worker){.fill = f, .thread = i};
-    result =
-        abbe_light_walk_make(g, &f->media, &f->mirrors, &full, d->seed, &f->worker[i].walk, error);
+    ABBE_TRY(
+        abbe_light_walk_make(g, &f->media, &f->mirrors, &full, d->seed, &f->worker[i].walk, error));
   }
-  if (result == ABBE_OK && d->kind == ABBE_VOLUME_VECTOR)
-    result = abbe_volume_space_measure(g, &f->volume->region, f->lone.place.centre,
-                                       f->volume->body.radius, LINES, f->space, error);
-  return result;
+  if (d->kind == ABBE_VOLUME_VECTOR)
+    ABBE_TRY(abbe_volume_space_measure(g, &f->volume->region, f->lone.place.centre,
+                                       f->volume->body.radius, LINES, f->space, error));
+  return ABBE_OK;
 }
 
 static void free_tables(fill *f) {

@@ -340,9 +340,8 @@ abbe_result abbe_compare_find_units(abbe_compare_state *s, abbe_error *error) {
                           "the reference is black: its mean is %g, and errors are told relative "
                           "to it",
                           out->unit);
-  abbe_result result = ABBE_OK;
-  if (s->options->best_scale) result = find_scale(s, &out->scale, error);
-  if (result != ABBE_OK || !colour) return result;
+  if (s->options->best_scale) ABBE_TRY(find_scale(s, &out->scale, error));
+  if (!colour) return ABBE_OK;
   out->white_found = white[0] == 0 && white[1] == 0 && white[2] == 0;
   for (int c = 0; c < 3; c++) out->white[c] = white[c];
   return out->white_found ? find_white(s, out->white, error) : ABBE_OK;

@@ -186,7 +186,7 @@ static abbe_result measure(const abbe_compare_state *s, abbe_compare_sides who, 
 }
 
 abbe_result abbe_compare_structure(const abbe_compare_state *s, abbe_error *error) {
-  float *room = calloc(s->pixels, 9 * sizeof *room);
+  ABBE_FREED float *room = calloc(s->pixels, 9 * sizeof *room);
   if (room == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to compare the structure of %zu pixels",
                           s->pixels);
@@ -195,10 +195,8 @@ abbe_result abbe_compare_structure(const abbe_compare_state *s, abbe_error *erro
     both.grey[side] = room + (1 + side) * s->pixels;
     both.rgb[side] = (float(*)[3])(room + (3 + 3 * side) * s->pixels);
   }
-  abbe_result result = ABBE_OK;
-  for (int i = ABBE_COMPARE_TEST; i <= ABBE_COMPARE_NOISE_OF_BOTH && result == ABBE_OK; i++)
+  for (int i = ABBE_COMPARE_TEST; i <= ABBE_COMPARE_NOISE_OF_BOTH; i++)
     if (abbe_compare_knows(s, (abbe_compare_sides)i))
-      result = measure(s, (abbe_compare_sides)i, &both, error);
-  free(room);
-  return result;
+      ABBE_TRY(measure(s, (abbe_compare_sides)i, &both, error));
+  return ABBE_OK;
 }

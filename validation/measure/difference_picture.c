@@ -86,14 +86,13 @@ static abbe_result draw(const char *path, const abbe_field *reference, const abb
 abbe_result abbe_difference_picture_write(const char *path, const abbe_field *reference,
                                           const abbe_field *test, double scale, double range,
                                           const char *title, abbe_error *error) {
-  abbe_result result = check(reference, test, error);
-  if (result == ABBE_OK && !(range > 0 && isfinite(range)))
-    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                            "differences of -%g to %g cannot be drawn; the range is above 0", range,
-                            range);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check(reference, test, error));
+  if (!(range > 0 && isfinite(range)))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "differences of -%g to %g cannot be drawn; the range is above 0", range,
+                          range);
   size_t pixels = reference->width * reference->height;
-  float *value = malloc(pixels * sizeof *value);
+  ABBE_FREED float *value = malloc(pixels * sizeof *value);
   if (value == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory for %zu differences", pixels);
   for (size_t p = 0; p < pixels; p++) value[p] = (float)difference(reference, test, scale, p);
@@ -110,7 +109,5 @@ abbe_result abbe_difference_picture_write(const char *path, const abbe_field *re
                               .max = range,
                               .map = ABBE_COLOUR_MAP_DIFFERENCE,
                               .label = label};
-  result = draw(path, reference, &f, title, error);
-  free(value);
-  return result;
+  return draw(path, reference, &f, title, error);
 }

@@ -160,12 +160,9 @@ abbe_result abbe_field_align(abbe_field *a, const char *name_a, abbe_field *b, c
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s is a %s and %s a %s; two of a kind can be compared", name_a,
                           abbe_field_kind_name(a->kind), name_b, abbe_field_kind_name(b->kind));
-  abbe_result result = ABBE_OK;
-  if (a->kind == ABBE_FIELD_RECEIVER_MAP) result = check_layout(a, name_a, b, name_b, error);
-  if (result == ABBE_OK) result = align_sizes(a, name_a, b, name_b, error);
-  if (result == ABBE_OK)
-    result = abbe_image_check_place(&a->header, name_a, &b->header, name_b, error);
-  if (result != ABBE_OK) return result;
+  if (a->kind == ABBE_FIELD_RECEIVER_MAP) ABBE_TRY(check_layout(a, name_a, b, name_b, error));
+  ABBE_TRY(align_sizes(a, name_a, b, name_b, error));
+  ABBE_TRY(abbe_image_check_place(&a->header, name_a, &b->header, name_b, error));
   bool colour = a->colour.channels > 0 && b->colour.channels > 0;
   if (!colour && (a->bands.channels == 0 || !same_bands(a, b)))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -356,12 +353,10 @@ abbe_result abbe_field_make(const abbe_image *image, const char *name, abbe_fiel
 }
 
 abbe_result abbe_field_load(const char *path, abbe_field *out, abbe_error *error) {
-  abbe_image image = {0};
+  ABBE_OWNED(abbe_image, image) = {0};
   *out = (abbe_field){0};
-  abbe_result result = abbe_exr_read(path, &image, error);
-  if (result == ABBE_OK) result = abbe_field_make(&image, path, out, error);
-  abbe_image_free(&image);
-  return result;
+  ABBE_TRY(abbe_exr_read(path, &image, error));
+  return abbe_field_make(&image, path, out, error);
 }
 
 static void free_samples(abbe_field_samples *samples) {

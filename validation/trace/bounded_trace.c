@@ -36,11 +36,10 @@ static abbe_result trace(const abbe_bounded_trace_desc *d, abbe_tracer *tracer, 
                          pictures *p, abbe_pass_error *own, abbe_error *error) {
   const size_t part = passes / 2;
   const bool tells = d->filtered ? d->max_error > 0 : part > 0;
-  abbe_result result = ABBE_OK;
   *own = (abbe_pass_error){NAN, NAN};
-  if (tells) result = go_on(d, tracer, part, &p->part, &p->filtered_part, error);
-  if (result == ABBE_OK) result = go_on(d, tracer, passes, &p->whole, &p->filtered, error);
-  if (result != ABBE_OK || !tells) return result;
+  if (tells) ABBE_TRY(go_on(d, tracer, part, &p->part, &p->filtered_part, error));
+  ABBE_TRY(go_on(d, tracer, passes, &p->whole, &p->filtered, error));
+  if (!tells) return ABBE_OK;
   const abbe_pass_pictures all = {.part = &p->part,
                                   .whole = &p->whole,
                                   .part_passes = part,

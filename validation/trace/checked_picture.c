@@ -27,8 +27,8 @@ static abbe_result go_on(const abbe_checked_picture_desc *d, abbe_tracer *tracer
                          abbe_image *out, abbe_error *error) {
   const abbe_trace_run_desc run = {
       .passes = passes, .progress = watch_time, .user = (void *)d, .stop = d->stop};
-  abbe_result result = abbe_trace_run(tracer, &run, error);
-  return result == ABBE_OK ? abbe_tracer_picture(tracer, out, error) : result;
+  ABBE_TRY(abbe_trace_run(tracer, &run, error));
+  return abbe_tracer_picture(tracer, out, error);
 }
 
 /* Below it, by as much chance as above. */
@@ -46,18 +46,16 @@ static bool is_decided(const abbe_checked_picture_desc *d, const abbe_checked_pi
 static abbe_result tell(const abbe_checked_picture_desc *d, abbe_tracer *tracer, size_t passes,
                         const abbe_image *picture, abbe_image *traced, abbe_checked_picture *out,
                         abbe_error *error) {
-  abbe_image part = *traced;
+  ABBE_OWNED(abbe_image, part) = *traced;
   *traced = (abbe_image){0};
-  abbe_result result = ABBE_OK;
-  if (part.data == NULL) result = go_on(d, tracer, passes / 2, &part, error);
-  if (result == ABBE_OK) result = go_on(d, tracer, passes, traced, error);
+  if (part.data == NULL) ABBE_TRY(go_on(d, tracer, passes / 2, &part, error));
+  ABBE_TRY(go_on(d, tracer, passes, traced, error));
   const abbe_pass_pictures all = {
       .part = &part, .whole = traced, .part_passes = passes / 2, .passes = passes};
-  if (result == ABBE_OK) result = abbe_pass_error_make(&all, &out->traced, error);
-  if (result == ABBE_OK) result = abbe_pass_error_of_picture(&all, picture, &out->given, error);
-  if (result == ABBE_OK) out->passes = passes;
-  abbe_image_free(&part);
-  return result;
+  ABBE_TRY(abbe_pass_error_make(&all, &out->traced, error));
+  ABBE_TRY(abbe_pass_error_of_picture(&all, picture, &out->given, error));
+  out->passes = passes;
+  return ABBE_OK;
 }
 
 /* Twice as many passes take as long again as those before them took, of which the first two have

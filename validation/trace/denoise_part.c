@@ -225,8 +225,7 @@ abbe_result abbe_denoise_part_filter(abbe_denoise_part *p, abbe_error *error) {
   job.out[0] = p->out[0];
   job.out_variance[0] = p->error[0];
   job.own = own;
-  abbe_result result = abbe_nl_means_run(&job, w->threads, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_nl_means_run(&job, w->threads, error));
   job.window = COLOUR_WINDOW;
   job.noise = colour_noise;
   job.compared = 2;
@@ -240,8 +239,7 @@ abbe_result abbe_denoise_part_filter(abbe_denoise_part *p, abbe_error *error) {
   job.out[2] = around;
   job.out_variance[2] = around_variance;
   job.own = colour_own;
-  result = abbe_nl_means_run(&job, w->threads, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_nl_means_run(&job, w->threads, error));
   follow_brightness(p, around, around_variance);
   give_back(p);
   float *const owns[3] = {own, colour_own, colour_own};

@@ -23,8 +23,7 @@ static const char name[] = "the picture";
 
 /* Colours alone: standard errors of channels are not asked. */
 static abbe_result take(const abbe_image *image, abbe_field *out, abbe_error *error) {
-  abbe_result result = abbe_field_make(image, name, out, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_field_make(image, name, out, error));
   free(out->colour.error);
   out->colour.error = NULL;
   if (out->colour.channels == 3) return ABBE_OK;
@@ -50,8 +49,7 @@ typedef struct region {
 static abbe_result find_region(const abbe_field *of, region *out, abbe_error *error) {
   abbe_comparison c;
   const abbe_compare_options options = {0};
-  abbe_result result = abbe_compare(of, of, &options, &c, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_compare(of, of, &options, &c, error));
   for (int k = 0; k < 3; k++) out->white[k] = c.white[k];
   abbe_comparison_free(&c);
   return abbe_mask_make_caustic(of, name, ABBE_MASK_CAUSTIC_SHARE, &out->mask, error);

@@ -394,9 +394,7 @@ static abbe_result mix_bands(const abbe_inspect_picture *p, const abbe_inspect_l
   const bool reflective = p->bands.kind == ABBE_SPECTRAL_REFLECTIVE;
   abbe_spectral_view view = look->view;
   if (!reflective && view.from == NULL) view.to = NULL;
-  const abbe_result result =
-      abbe_spectral_colour_weights(&p->bands, &view, p->path, mix->weight, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_spectral_colour_weights(&p->bands, &view, p->path, mix->weight, error));
   memcpy(mix->channel, p->bands.channel, mix->count * sizeof *mix->channel);
   double even = 0;
   for (size_t i = 0; i < mix->count; i++) even += mix->weight[i][1] / p->bands.unit.factor;

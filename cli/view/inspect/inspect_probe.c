@@ -111,8 +111,7 @@ static abbe_result take_colour(const abbe_inspect *s, const abbe_inspect_picture
   double matrix[9];
   abbe_dominant dominant = {NAN, NAN, NAN};
   if (entry == NULL) return ABBE_OK;
-  const abbe_result result = abbe_inspect_mix_make(p, entry, &s->look, &mix, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_inspect_mix_make(p, entry, &s->look, &mix, error));
   abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
   const bool some = mean_of(p, from, &mix, out, out->xyz);
   abbe_rgb_space_apply(matrix, out->xyz, out->xyz);

@@ -134,9 +134,7 @@ static size_t counterpart(const abbe_inspect_picture *p, size_t entry,
 static abbe_result mix_other(const abbe_inspect_picture *p, const abbe_inspect_picture *other,
                              const abbe_inspect_look *look, abbe_inspect_mix *out,
                              abbe_error *error) {
-  abbe_result result =
-      abbe_image_check_place(&p->image, p->path, &other->image, other->path, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_image_check_place(&p->image, p->path, &other->image, other->path, error));
   if (p->width != other->width || p->height != other->height)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s has %zu x %zu pixels, %s has %zu x %zu: there is no difference",

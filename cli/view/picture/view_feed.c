@@ -226,18 +226,17 @@ static bool is_wanted(const volatile int *stop) {
 
 abbe_result abbe_view_feed_add(abbe_view_feed *feed, const abbe_view_hits *h, abbe_error *error) {
   const size_t each = h->slots * h->samples;
-  uint32_t *photon_of = NULL;
-  abbe_result result = index_cells(h, &photon_of, error);
-  for (size_t i = 0; i < h->count && result == ABBE_OK && is_wanted(h->stop); i++) {
+  ABBE_FREED uint32_t *photon_of = NULL;
+  ABBE_TRY(index_cells(h, &photon_of, error));
+  for (size_t i = 0; i < h->count && is_wanted(h->stop); i++) {
     double flux = 0;
     for (size_t hit = i * each; hit < (i + 1) * each; hit++)
       if (lights(feed, h, photon_of, i, hit)) flux += (double)h->at[4 * hit + 3];
     if (!(flux > 0)) continue;
     feed->flux += flux;
-    result = add_landed(feed, h, i, flux, error);
+    ABBE_TRY(add_landed(feed, h, i, flux, error));
   }
-  free(photon_of);
-  return result;
+  return ABBE_OK;
 }
 
 static int by_flux(const void *a, const void *b) {

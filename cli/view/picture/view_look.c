@@ -154,9 +154,8 @@ static abbe_result add_pass(abbe_tracer *tracer, const volatile int *stop, doubl
                             double squares[], abbe_view_spot *out, abbe_error *error) {
   abbe_image picture;
   double mean[ABBE_VIEW_SPOT_BANDS];
-  abbe_result result = abbe_tracer_pass(tracer, stop, error);
-  if (result == ABBE_OK) result = abbe_tracer_picture(tracer, &picture, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_tracer_pass(tracer, stop, error));
+  ABBE_TRY(abbe_tracer_picture(tracer, &picture, error));
   read_bands(&picture, out, mean);
   abbe_image_free(&picture);
   const double n = (double)++out->passes;

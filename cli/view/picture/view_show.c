@@ -195,17 +195,15 @@ static abbe_result show_colours(const abbe_image *from, const size_t channel[3],
                                 unsigned char *out, abbe_error *error) {
   static const char *const names[] = {"R", "G", "B"};
   enum { ROWS = 16 };
-  abbe_image rows = {0};
-  abbe_result result = abbe_image_make(from->width, from->height < ROWS ? from->height : ROWS, 3,
-                                       names, &rows, error);
-  for (size_t y = 0; result == ABBE_OK && y < from->height; y += rows.height) {
+  ABBE_OWNED(abbe_image, rows) = {0};
+  ABBE_TRY(abbe_image_make(from->width, from->height < ROWS ? from->height : ROWS, 3, names, &rows,
+                           error));
+  for (size_t y = 0; y < from->height; y += rows.height) {
     if (from->height - y < rows.height) rows.height = from->height - y;
-    result = abbe_watch_check(error);
-    if (result == ABBE_OK)
-      result = show_rows(from, channel, gain, display, table, y, &rows, out, error);
+    ABBE_TRY(abbe_watch_check(error));
+    ABBE_TRY(show_rows(from, channel, gain, display, table, y, &rows, out, error));
   }
-  abbe_image_free(&rows);
-  return result;
+  return ABBE_OK;
 }
 
 abbe_result abbe_view_show(const abbe_view_pictures *p, abbe_view_shown shown, double exposure,

@@ -48,10 +48,10 @@ abbe_result abbe_view_guard_begin(abbe_view_guard *g, unsigned port, abbe_error 
   if (g->epoll < 0)
     return abbe_error_set(error, ABBE_IO, "no socket for the page: %s", strerror(errno));
   g->port = port;
-  const abbe_result result = abbe_view_guard_listen(&g->port, &g->listening, error);
-  if (result == ABBE_OK && watch(g, g->listening, LISTENS, EPOLLIN) != 0)
+  ABBE_TRY(abbe_view_guard_listen(&g->port, &g->listening, error));
+  if (watch(g, g->listening, LISTENS, EPOLLIN) != 0)
     return abbe_error_set(error, ABBE_IO, "no socket for the page: %s", strerror(errno));
-  return result;
+  return ABBE_OK;
 }
 
 static void end(abbe_view_guard *g, size_t place) {

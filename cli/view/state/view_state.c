@@ -341,7 +341,9 @@ static bool any_down(const abbe_view_state *state) {
   return state->down[0] || state->down[1] || state->down[2];
 }
 
-void abbe_view_state_set_down(abbe_view_state *state, size_t index, double now_s) {
+/* Lets an object of the outline down, or lifts it, onto the flat receiver below it, as a step;
+ * where there is none, or it was tilted just now, the refusal says so. */
+static void view_state_set_down(abbe_view_state *state, size_t index, double now_s) {
   const abbe_view_object *object = &state->outline.object[index];
   double to[3];
   if (index >= state->outline.object_count || any_down(state)) return;
@@ -441,7 +443,7 @@ bool abbe_view_state_key(abbe_view_state *state, int key, bool down, int modifie
       if (state->outline.object[i].thick)
         state->was_held = (abbe_view_handle){ABBE_VIEW_OBJECT_HANDLE, i, {0, 0}};
     }
-    abbe_view_state_set_down(state, state->was_held.index, now_s);
+    view_state_set_down(state, state->was_held.index, now_s);
     return true;
   case '+':
     state->exposure = fmin(state->exposure + 0.5, 20);

@@ -104,9 +104,6 @@ void abbe_view_state_tick(abbe_view_state *state, double seconds, double now_s);
 /* A value of the scene, as a slider or a picker sets it; `continued`: as the one before. */
 void abbe_view_state_set(abbe_view_state *state, const char *key, const char *value, bool continued,
                          double now_s);
-/* Lets an object of the outline down, or lifts it, onto the flat receiver below it, as a step;
- * where there is none, or it was tilted just now, the refusal says so. */
-void abbe_view_state_set_down(abbe_view_state *state, size_t object, double now_s);
 /* Wavelengths, photons and the map's side; 0: by the stage. */
 void abbe_view_state_settings(abbe_view_state *state, size_t wavelengths, size_t photons,
                               size_t map_size, bool continued, double now_s);

@@ -212,12 +212,10 @@ static abbe_result draw(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
    * longer, and other code of the driver's; so also for programs' sake. But whoever closes the
    * window does not wait for the compiler. */
   const bool made = w->renderer != NULL && !q->job.warms;
-  abbe_result result = change(w, &desc, moving && made ? NULL : goes_on, error);
-  if (result == ABBE_OK)
-    result = abbe_renderer_frame(w->renderer, moving ? NULL : goes_on, w,
-                                 moving ? NULL : &out->statistics, error);
-  if (result == ABBE_OK) result = abbe_renderer_read(w->renderer, !moving, &out->picture, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(change(w, &desc, moving && made ? NULL : goes_on, error));
+  ABBE_TRY(abbe_renderer_frame(w->renderer, moving ? NULL : goes_on, w,
+                               moving ? NULL : &out->statistics, error));
+  ABBE_TRY(abbe_renderer_read(w->renderer, !moving, &out->picture, error));
   if (q->job.stage == ABBE_VIEW_ACCURATE) abbe_renderer_rest(w->renderer);
   const abbe_plan *plan = abbe_renderer_plan(w->renderer);
   const abbe_preset_point *point = abbe_view_settings_point(&w->front, q->job.stage);
@@ -283,10 +281,10 @@ static abbe_result look(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
   out->feed = malloc(sizeof *out->feed);
   if (out->feed == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for photons");
   abbe_view_feed *feed = out->feed;
-  const abbe_result result = abbe_view_look_feed(w->renderer, w->scene.now, q->point, q->radius,
-                                                 q->nm, &w->stop, feed, error);
+  ABBE_TRY(abbe_view_look_feed(w->renderer, w->scene.now, q->point, q->radius, q->nm, &w->stop,
+                               feed, error));
   const bool may = feed->on_refractor ? feed->sight.lands : q->lit; /* a caustic be there */
-  if (result != ABBE_OK || feed->photons > 0 || !may) return result;
+  if (feed->photons > 0 || !may) return ABBE_OK;
   return abbe_view_look_closer(w->context, w->renderer, w->scene.now, q->point, q->radius, q->nm,
                                &w->stop, feed, error);
 }

@@ -33,14 +33,13 @@ abbe_result abbe_image_eye_make(const abbe_gpu_scene *scene, const abbe_image_pl
   abbe_camera_view_fit(scene->local, &scene->plan->desc, &out->camera);
   abbe_image_cube sight;
   abbe_image_cube_one(&out->camera.view, &sight);
-  abbe_result result =
-      abbe_image_places_make(scene, &sight, size, size, false, &out->places, error);
+  ABBE_TRY(abbe_image_places_make(scene, &sight, size, size, false, &out->places, error));
   const abbe_image_texture all[] = {
       {&out->lit, GL_RGBA32F, size[0], size[1], 0, false},
       {&out->lit_depth, GL_DEPTH_COMPONENT32F, size[0], size[1], 0, false},
       {&out->picture, GL_RGBA32F, size[0], size[1], 0, false}};
-  if (result == ABBE_OK) result = abbe_image_textures_make(scene->gpu, all, 3, error);
-  return result == ABBE_OK ? make_programs(out, variant, more, error) : result;
+  ABBE_TRY(abbe_image_textures_make(scene->gpu, all, 3, error));
+  return make_programs(out, variant, more, error);
 }
 
 void abbe_image_eye_look(abbe_image_eye *e) {
@@ -92,11 +91,9 @@ static abbe_result light_receivers(abbe_image_eye *e, GLuint caustic_map, abbe_e
   const GLfloat sky = printed ? 0 : (float)scene->local->background;
   const GLfloat background[4] = {sky, sky, sky, 0};
   abbe_gpu_start_lap(scene->gpu);
-  abbe_result result = abbe_image_places_receivers(&e->places, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_set_target(scene->gpu, &e->lit, &flat, 1, e->lit_depth, e->places.size[0],
-                                 e->places.size[1], error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_image_places_receivers(&e->places, error));
+  ABBE_TRY(abbe_gpu_set_target(scene->gpu, &e->lit, &flat, 1, e->lit_depth, e->places.size[0],
+                               e->places.size[1], error));
   gl->ClearBufferfv(GL_COLOR, 0, background);
   gl->ClearBufferfv(GL_DEPTH, 0, &far_away);
   gl->Enable(GL_DEPTH_TEST);

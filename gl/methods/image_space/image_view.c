@@ -205,44 +205,39 @@ abbe_result abbe_image_view_read_map(const abbe_gpu_scene *scene, GLuint map,
                                      abbe_error *error) {
   const abbe_gl *gl = scene->gpu->gl;
   const size_t side = scene->plan->desc.map_size;
-  float *data = malloc(side * side * 4 * sizeof *data);
+  ABBE_FREED float *data = malloc(side * side * 4 * sizeof *data);
   if (data == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
   gl->BindTexture(GL_TEXTURE_2D, map);
   gl->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, data);
   /* The passes sum the light of a light of unit power. */
-  abbe_result result =
-      in_units(scene)
-          ? abbe_map_picture_flux(data, side, layout, scene->local->light[0].power, out, error)
-          : abbe_map_picture_colour(data, side, out, error);
-  free(data);
-  return result;
+  return in_units(scene)
+             ? abbe_map_picture_flux(data, side, layout, scene->local->light[0].power, out, error)
+             : abbe_map_picture_colour(data, side, out, error);
 }
 
 abbe_result abbe_image_textures_make(abbe_gpu *gpu, const abbe_image_texture *all, size_t count,
                                      abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < count && result == ABBE_OK; i++)
+  for (size_t i = 0; i < count; i++)
     if (all[i].texture != NULL)
-      result = abbe_gpu_make_texture(gpu, all[i].format, all[i].width, all[i].height, all[i].layers,
-                                     all[i].linear, all[i].texture, error);
-  return result;
+      ABBE_TRY(abbe_gpu_make_texture(gpu, all[i].format, all[i].width, all[i].height, all[i].layers,
+                                     all[i].linear, all[i].texture, error));
+  return ABBE_OK;
 }
 
 abbe_result abbe_image_programs_make(const abbe_shader_variant *variant, abbe_gpu *gpu,
                                      const abbe_image_program *all, size_t count,
                                      abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < count; i++) {
     const abbe_image_program *p = &all[i];
     abbe_program_stage stages[3] = {{GL_VERTEX_SHADER, p->vertex}};
     size_t used = 1;
     if (p->program == NULL) continue;
     if (p->geometry != NULL) stages[used++] = (abbe_program_stage){GL_GEOMETRY_SHADER, p->geometry};
     stages[used++] = (abbe_program_stage){GL_FRAGMENT_SHADER, p->fragment};
-    result =
+    ABBE_TRY(
         p->plain
             ? abbe_gpu_program(gpu, stages, used, p->more != NULL ? p->more : "", p->program, error)
-            : abbe_shader_variant_program(variant, gpu, stages, used, p->more, p->program, error);
+            : abbe_shader_variant_program(variant, gpu, stages, used, p->more, p->program, error));
   }
-  return result;
+  return ABBE_OK;
 }

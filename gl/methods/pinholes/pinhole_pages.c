@@ -190,8 +190,10 @@ static bool find_closed(const abbe_gpu_scene *scene, abbe_page_charts *out) {
   return out->closed != NULL;
 }
 
-abbe_result abbe_page_charts_make(const abbe_gpu_scene *scene, size_t side, abbe_page_charts *out,
-                                  abbe_error *error) {
+/* Makes tiles of side x side texels, laid out as in pinhole_map.glsl; a texel beside its chart has
+ * the nearest place of it. ABBE_GL, ABBE_NO_MEMORY. */
+static abbe_result page_charts_make(const abbe_gpu_scene *scene, size_t side, abbe_page_charts *out,
+                                    abbe_error *error) {
   *out = (abbe_page_charts){0};
   if (!find_closed(scene, out))
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for charts");
@@ -199,7 +201,7 @@ abbe_result abbe_page_charts_make(const abbe_gpu_scene *scene, size_t side, abbe
   return upload_charts(scene, out, error);
 }
 
-void abbe_page_charts_free(abbe_gpu *gpu, abbe_page_charts *charts) {
+static void page_charts_free(abbe_gpu *gpu, abbe_page_charts *charts) {
   abbe_gpu_drop_buffers(gpu, 1, &charts->places);
   abbe_gpu_drop_buffers(gpu, 1, &charts->rows);
   abbe_gpu_drop_buffers(gpu, 1, &charts->faces);
@@ -209,7 +211,8 @@ void abbe_page_charts_free(abbe_gpu *gpu, abbe_page_charts *charts) {
   *charts = (abbe_page_charts){0};
 }
 
-void abbe_page_charts_bind(abbe_gpu *gpu, const abbe_page_charts *charts) {
+/* The charts and their faces, where shaders expect them. */
+static void page_charts_bind(abbe_gpu *gpu, const abbe_page_charts *charts) {
   gpu->gl->ActiveTexture(GL_TEXTURE0 + UNIT_CHART_ROWS);
   gpu->gl->BindTexture(GL_TEXTURE_BUFFER, charts->rows_texture);
   gpu->gl->ActiveTexture(GL_TEXTURE0 + UNIT_SIDE_OF_FACE);
@@ -241,11 +244,10 @@ static size_t cube_side(const abbe_radiance_map *map) {
 static abbe_result make_sky(const abbe_gpu_scene *scene, abbe_pinhole_sky *out, abbe_error *error) {
   const abbe_environment *e = scene->local->environment;
   abbe_radiance_map left;
-  abbe_result result =
-      e == NULL ? abbe_radiance_map_make(4 * LEAST_CUBE, &left, error) /* dark */
-                : abbe_environment_lights_leave(e, scene->local->environment_lights, &left, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_pinhole_sky_make(scene, &left, cube_side(&left), out, error);
+  ABBE_TRY(e == NULL
+               ? abbe_radiance_map_make(4 * LEAST_CUBE, &left, error) /* dark */
+               : abbe_environment_lights_leave(e, scene->local->environment_lights, &left, error));
+  abbe_result result = abbe_pinhole_sky_make(scene, &left, cube_side(&left), out, error);
   abbe_radiance_map_free(&left);
   return result;
 }
@@ -292,18 +294,15 @@ abbe_result abbe_pinhole_pages_make(const abbe_gpu_scene *scene, const abbe_shad
   out->count =
       2 * (scene->plan->page_charts ? scene->charts.count : scene->plan->parallelogram_count);
   out->side = side_of(scene->plan, out->count);
-  abbe_result result = check_count(scene, out->count, error);
-  if (result == ABBE_OK) result = abbe_pinhole_samples_make(scene, false, &out->samples, error);
-  if (result == ABBE_OK && scene->plan->page_charts)
-    result = abbe_page_charts_make(scene, out->side, &out->charts, error);
-  if (result == ABBE_OK) result = make_sky(scene, &out->sky, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, out->side, out->side, out->count, true,
-                                   &out->texture, error);
-  for (int k = 0; k < 2 && result == ABBE_OK; k++)
-    result = abbe_gpu_make_buffer(scene->gpu, ABBE_GPU_LIST_HEADER + 4 * out->side * out->side,
-                                  NULL, &out->texels[k], error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_count(scene, out->count, error));
+  ABBE_TRY(abbe_pinhole_samples_make(scene, false, &out->samples, error));
+  if (scene->plan->page_charts) ABBE_TRY(page_charts_make(scene, out->side, &out->charts, error));
+  ABBE_TRY(make_sky(scene, &out->sky, error));
+  ABBE_TRY(abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, out->side, out->side, out->count, true,
+                                 &out->texture, error));
+  for (int k = 0; k < 2; k++)
+    ABBE_TRY(abbe_gpu_make_buffer(scene->gpu, ABBE_GPU_LIST_HEADER + 4 * out->side * out->side,
+                                  NULL, &out->texels[k], error));
   out->order = malloc(out->side * out->side * sizeof *out->order);
   if (out->order == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for pages");
   return make_programs(out, variant, error);
@@ -313,7 +312,7 @@ void abbe_pinhole_pages_free(abbe_pinhole_pages *pages) {
   if (pages->scene == NULL) return;
   abbe_pinhole_samples_free(pages->scene->gpu, &pages->samples);
   abbe_pinhole_sky_free(pages->scene->gpu, &pages->sky);
-  abbe_page_charts_free(pages->scene->gpu, &pages->charts);
+  page_charts_free(pages->scene->gpu, &pages->charts);
   abbe_gpu_drop_buffers(pages->scene->gpu, 2, pages->texels);
   abbe_gpu_drop_textures(pages->scene->gpu, 1, &pages->texture);
   free(pages->order);
@@ -399,17 +398,16 @@ static abbe_result fill_pages(abbe_pinhole_pages *pages, abbe_error *error) {
   const abbe_gpu_scene *scene = pages->scene;
   const abbe_plan *plan = scene->plan;
   size_t page = 0;
-  abbe_result result = ABBE_OK;
   for (size_t i = 0; i < plan->receiver_count; i++) {
     if (plan->receiver_model[i] != ABBE_RECEIVER_EXACT) continue;
     const abbe_exact *exact = &scene->local->object[plan->receiver_object[i]].exact;
-    for (size_t k = 0; k < 2 * exact->count && result == ABBE_OK; k++, page++)
+    for (size_t k = 0; k < 2 * exact->count; k++, page++)
       if (sees_refractors(scene, exact->parallelogram[k / 2], k % 2 != 0))
-        result = fill_page(pages, page, error);
+        ABBE_TRY(fill_page(pages, page, error));
   }
-  for (; page < pages->count && result == ABBE_OK; page++)
-    if (page % 2 == 0 || !pages->charts.closed[page / 2]) result = fill_page(pages, page, error);
-  return result;
+  for (; page < pages->count; page++)
+    if (page % 2 == 0 || !pages->charts.closed[page / 2]) ABBE_TRY(fill_page(pages, page, error));
+  return ABBE_OK;
 }
 
 static abbe_result clear(abbe_pinhole_pages *pages, abbe_error *error) {
@@ -465,6 +463,6 @@ abbe_result abbe_pinhole_pages_run(abbe_pinhole_pages *pages, abbe_error *error)
 void abbe_pinhole_pages_set(const abbe_pinhole_pages *pages, GLuint program) {
   if (pages->scene == NULL) return;
   abbe_gpu_bind_array(pages->scene->gpu, program, "pinhole_pages", UNIT, pages->texture);
-  if (pages->scene->plan->page_charts) abbe_page_charts_bind(pages->scene->gpu, &pages->charts);
+  if (pages->scene->plan->page_charts) page_charts_bind(pages->scene->gpu, &pages->charts);
   if (pages->scene->plan->rough) abbe_pinhole_sky_set(pages->scene, &pages->sky, SKY_UNIT, program);
 }

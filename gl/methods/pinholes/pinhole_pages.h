@@ -24,14 +24,6 @@ typedef struct abbe_page_charts {
   bool *closed;               /* [all charts] it is of what encloses a space: its back is inside */
 } abbe_page_charts;
 
-/* Makes tiles of side x side texels, laid out as in pinhole_map.glsl; a texel beside its chart has
- * the nearest place of it. ABBE_GL, ABBE_NO_MEMORY. */
-abbe_result abbe_page_charts_make(const abbe_gpu_scene *scene, size_t side, abbe_page_charts *out,
-                                  abbe_error *error);
-void abbe_page_charts_free(abbe_gpu *gpu, abbe_page_charts *charts);
-/* The charts and their faces, where shaders expect them. */
-void abbe_page_charts_bind(abbe_gpu *gpu, const abbe_page_charts *charts);
-
 typedef struct abbe_pinhole_pages {
   const abbe_gpu_scene *scene; /* NULL: there are none */
   abbe_pinhole_samples samples;

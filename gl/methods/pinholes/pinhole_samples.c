@@ -167,13 +167,12 @@ static abbe_result upload_samples(const abbe_gpu_scene *scene, bool published,
 static abbe_result upload(const abbe_gpu_scene *scene, bool published,
                           const abbe_surface_samples *s, abbe_pinhole_samples *out,
                           abbe_error *error) {
-  bool *sheet = calloc(scene->plan->refractor_count + 1, sizeof *sheet);
+  ABBE_FREED bool *sheet = calloc(scene->plan->refractor_count + 1, sizeof *sheet);
   if (sheet == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for pinholes");
   const bool any = find_sheets(scene, sheet);
-  abbe_result result = upload_samples(scene, published, s, sheet, out, error);
-  if (result == ABBE_OK && !published) result = upload_nodes(scene, s, any, out, error);
-  free(sheet);
-  return result;
+  ABBE_TRY(upload_samples(scene, published, s, sheet, out, error));
+  if (!published) ABBE_TRY(upload_nodes(scene, s, any, out, error));
+  return ABBE_OK;
 }
 
 uint64_t abbe_pinhole_samples_seed(const abbe_render_desc *d) {

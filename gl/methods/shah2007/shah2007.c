@@ -122,11 +122,10 @@ static abbe_result make(abbe_method *m, const abbe_shader_variant *variant, abbe
       {&s->map, GL_RGBA32F, map[0], map[1], layers, true},
       {d->low_pass > 0 ? &s->smoothed : NULL, GL_RGBA32F, map[0], map[1], layers, true}};
   abbe_map_layout_make(&sight.face[0], &m->layout);
-  abbe_result result = abbe_image_places_make(scene, &sight, map, grid, true, &m->light, error);
-  if (result == ABBE_OK) result = abbe_image_textures_make(scene->gpu, all, 2, error);
-  if (result == ABBE_OK) result = abbe_image_tables_colours(scene, false, &m->colour, error);
-  if (result == ABBE_OK) result = make_programs(s, variant, error);
-  return result;
+  ABBE_TRY(abbe_image_places_make(scene, &sight, map, grid, true, &m->light, error));
+  ABBE_TRY(abbe_image_textures_make(scene->gpu, all, 2, error));
+  ABBE_TRY(abbe_image_tables_colours(scene, false, &m->colour, error));
+  return make_programs(s, variant, error);
 }
 
 static void free_own(abbe_method *m) {
@@ -182,8 +181,7 @@ static abbe_result splat_vertices(abbe_shah2007 *s, abbe_error *error) {
 static abbe_result smooth_face(abbe_shah2007 *s, int face, abbe_error *error) {
   abbe_gpu *gpu = s->base.scene->gpu;
   const abbe_render_desc *d = &s->base.scene->plan->desc;
-  abbe_result result = ABBE_OK;
-  for (int axis = 0; axis < 2 && result == ABBE_OK; axis++) {
+  for (int axis = 0; axis < 2; axis++) {
     const GLuint from = axis == 0 ? s->map : s->smoothed, to = axis == 0 ? s->smoothed : s->map;
     gpu->gl->UseProgram(s->low_pass);
     abbe_gpu_set_int(gpu, s->low_pass, "face", face);
@@ -193,9 +191,9 @@ static abbe_result smooth_face(abbe_shah2007 *s, int face, abbe_error *error) {
       abbe_gpu_bind_array(gpu, s->low_pass, "map", 0, from);
     gpu->gl->Uniform2i(gpu->gl->GetUniformLocation(s->low_pass, "along"), axis == 0, axis == 1);
     abbe_gpu_set_float(gpu, s->low_pass, "sigma", (double)d->low_pass);
-    result = abbe_image_view_draw_screen(s->base.scene, to, face, d->map_size, d->map_size, error);
+    ABBE_TRY(abbe_image_view_draw_screen(s->base.scene, to, face, d->map_size, d->map_size, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result smooth_map(abbe_shah2007 *s, abbe_error *error) {

@@ -338,12 +338,12 @@ static abbe_result run(abbe_method *m, bool lit, abbe_error *error) {
   abbe_thesis *t = (abbe_thesis *)m;
   abbe_gpu *gpu = m->scene->gpu;
   (void)lit;
-  abbe_result result = light_passes(t, error);
-  if (result == ABBE_OK) result = splat_photons(t, error);
-  if (result == ABBE_OK && smears(t)) result = fill_gaps(t, error);
-  if (result == ABBE_OK) result = light_receivers(t, error);
-  if (result == ABBE_OK) result = refract_eye(t, error);
-  if (result != ABBE_OK || gpu->statistics == NULL) return result;
+  ABBE_TRY(light_passes(t, error));
+  ABBE_TRY(splat_photons(t, error));
+  if (smears(t)) ABBE_TRY(fill_gaps(t, error));
+  ABBE_TRY(light_receivers(t, error));
+  ABBE_TRY(refract_eye(t, error));
+  if (gpu->statistics == NULL) return ABBE_OK;
   GLuint count = 0;
   gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, t->cells.list[ABBE_CELL_LEVELS - 1]);
   gpu->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);

@@ -2,9 +2,8 @@
 
 abbe_result abbe_transports_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
                                  abbe_transports *out, abbe_error *error) {
-  const abbe_result result = abbe_volume_light_make(scene, &out->volume, error);
-  return result == ABBE_OK ? abbe_pinhole_pages_make(scene, variant, &out->pinholes, error)
-                           : result;
+  ABBE_TRY(abbe_volume_light_make(scene, &out->volume, error));
+  return abbe_pinhole_pages_make(scene, variant, &out->pinholes, error);
 }
 
 void abbe_transports_free(abbe_transports *t, bool pages_stay) {

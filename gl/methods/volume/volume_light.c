@@ -98,8 +98,9 @@ static abbe_result light_pages(const abbe_volume_pages *v, const abbe_volume_pla
   return abbe_gl_check(scene->gpu->gl, "the upload of a volume's pages", error);
 }
 
-abbe_result abbe_volume_pages_make(const abbe_gpu_scene *scene, const abbe_volume_place *place,
-                                   abbe_volume_pages *out, abbe_error *error) {
+/* For the lights and the object where they are now. ABBE_GL, ABBE_NO_MEMORY. */
+static abbe_result volume_pages_make(const abbe_gpu_scene *scene, const abbe_volume_place *place,
+                                     abbe_volume_pages *out, abbe_error *error) {
   const abbe_plan *plan = scene->plan;
   const size_t lights = plan->light_view_count, side = side_of(plan);
   *out = (abbe_volume_pages){.count = plan->volume_pages};
@@ -119,13 +120,14 @@ abbe_result abbe_volume_pages_make(const abbe_gpu_scene *scene, const abbe_volum
   return result;
 }
 
-void abbe_volume_pages_free(abbe_volume_pages *pages) {
+static void volume_pages_free(abbe_volume_pages *pages) {
   if (pages->scene != NULL) abbe_gpu_drop_textures(pages->scene->gpu, 1, &pages->texture);
   free(pages->window);
   *pages = (abbe_volume_pages){0};
 }
 
-void abbe_volume_pages_set(const abbe_volume_pages *pages, GLuint program, int unit) {
+/* Into the program that is in use, at that unit (volume_pages.glsl). */
+static void volume_pages_set(const abbe_volume_pages *pages, GLuint program, int unit) {
   if (pages->scene == NULL) return;
   const abbe_gpu *gpu = pages->scene->gpu;
   const size_t all = pages->count * pages->scene->plan->light_view_count;
@@ -258,7 +260,7 @@ abbe_result abbe_volume_light_make(const abbe_gpu_scene *scene, abbe_volume_ligh
       &volume->body, &scene->local->object[plan->refractor_object[0]], &place, error);
   if (result != ABBE_OK) return result;
   out->scene = scene;
-  if (plan->volume_pages > 0) return abbe_volume_pages_make(scene, &place, &out->pages, error);
+  if (plan->volume_pages > 0) return volume_pages_make(scene, &place, &out->pages, error);
   uint32_t *values = calloc(count, sizeof *values);
   if (values == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a volume's nodes");
@@ -278,7 +280,7 @@ abbe_result abbe_volume_light_make(const abbe_gpu_scene *scene, abbe_volume_ligh
 
 void abbe_volume_light_free(abbe_volume_light *v) {
   if (v->scene == NULL) return;
-  abbe_volume_pages_free(&v->pages);
+  volume_pages_free(&v->pages);
   abbe_gpu_drop_buffers(v->scene->gpu, 1, &v->cells);
   *v = (abbe_volume_light){0};
 }
@@ -286,7 +288,7 @@ void abbe_volume_light_free(abbe_volume_light *v) {
 void abbe_volume_light_set(const abbe_volume_light *v, GLuint program) {
   if (v->scene == NULL) return;
   if (v->pages.scene != NULL) {
-    abbe_volume_pages_set(&v->pages, program, UNIT);
+    volume_pages_set(&v->pages, program, UNIT);
     return;
   }
   abbe_gpu *gpu = v->scene->gpu;

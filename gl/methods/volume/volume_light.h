@@ -22,13 +22,6 @@ typedef struct abbe_volume_pages {
  * NULL: no memory. */
 double (*abbe_volume_pages_sheets(const abbe_gpu_scene *scene))[9];
 
-/* For the lights and the object where they are now. ABBE_GL, ABBE_NO_MEMORY. */
-abbe_result abbe_volume_pages_make(const abbe_gpu_scene *scene, const abbe_volume_place *place,
-                                   abbe_volume_pages *out, abbe_error *error);
-void abbe_volume_pages_free(abbe_volume_pages *pages);
-/* Into the program that is in use, at that unit (volume_pages.glsl). */
-void abbe_volume_pages_set(const abbe_volume_pages *pages, GLuint program, int unit);
-
 enum { ABBE_VOLUME_LIGHT_SIGHTS = 3 * ABBE_SCENE_MAX_LIGHTS };
 
 typedef struct abbe_volume_light {

@@ -29,9 +29,6 @@ abbe_result abbe_wyman_photons_make(const abbe_gpu_scene *scene, const abbe_imag
                                     const abbe_shader_variant *variant, const char *definitions,
                                     abbe_wyman_photons *out, abbe_error *error);
 void abbe_wyman_photons_free(abbe_wyman_photons *photons);
-/* The light's places are drawn by then; face: of its views of objects. ABBE_GL. */
-abbe_result abbe_wyman_photons_run(const abbe_wyman_photons *photons, size_t wavelength,
-                                   size_t face, abbe_error *error);
 
 typedef struct abbe_wyman_target {
   const abbe_gpu_scene *scene;

@@ -61,8 +61,9 @@ void abbe_wyman_photons_free(abbe_wyman_photons *p) {
   *p = (abbe_wyman_photons){0};
 }
 
-abbe_result abbe_wyman_photons_run(const abbe_wyman_photons *p, size_t wavelength, size_t face,
-                                   abbe_error *error) {
+/* The light's places are drawn by then; face: of its views of objects. ABBE_GL. */
+static abbe_result wyman_photons_run(const abbe_wyman_photons *p, size_t wavelength, size_t face,
+                                     abbe_error *error) {
   static const int flat[2] = {-1, -1};
   const abbe_gpu_scene *scene = p->scene;
   const abbe_gl *gl = scene->gpu->gl;
@@ -312,7 +313,7 @@ abbe_result abbe_wyman_target_run(abbe_wyman_target *t, float (*colour)[3], bool
   const size_t faces = t->photons->light->object_faces;
   for (size_t i = 0; i < d->wavelengths * faces && result == ABBE_OK; i++) {
     if (!kept)
-      result = abbe_wyman_photons_run(t->photons, i % d->wavelengths, i / d->wavelengths, error);
+      result = wyman_photons_run(t->photons, i % d->wavelengths, i / d->wavelengths, error);
     if (result == ABBE_OK) result = draw(t, colour[i % d->wavelengths], i == 0, error);
   }
   t->light = t->sum;

@@ -125,9 +125,6 @@ abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan
  * False where a plane has faces of different films: then that of one. */
 bool abbe_refractor_films(const abbe_object *object, uint8_t *film);
 
-/* Whether the object's films are on some of its faces that no model but the BVH tells apart. */
-bool abbe_refractor_films_by_face(const abbe_object *object);
-
 /* Notes what is left out where light is not followed from one to another. */
 void abbe_refractor_model_note(const abbe_scene *scene, abbe_plan *plan);
 

@@ -70,21 +70,19 @@ static abbe_result check_cells(const abbe_plan *plan, const abbe_light *light,
 
 static abbe_result check_one_view(const abbe_scene *scene, const abbe_plan *plan,
                                   const abbe_light *light, abbe_error *error) {
-  abbe_result result = ABBE_OK;
   abbe_view view;
   abbe_light_views_fit(scene, light, plan, &view, NULL);
-  for (size_t k = 0; k < plan->refractor_count && result == ABBE_OK; k++) {
+  for (size_t k = 0; k < plan->refractor_count; k++) {
     const abbe_object *object = &scene->object[plan->refractor_object[k]];
     abbe_view own = view; /* with one refractor it is that one's own */
     if (plan->refractor_count > 1) {
       abbe_view_look(view.origin, view.forward, view.up, view.orthographic, &own);
       abbe_view_fit(&own, (const double(*)[3])object->mesh.position, object->mesh.vertex_count);
     }
-    result = check_distance(scene, light, object, error);
-    if (result == ABBE_OK)
-      result = check_cells(plan, light, object, count_cells(plan, &own, &view), error);
+    ABBE_TRY(check_distance(scene, light, object, error));
+    ABBE_TRY(check_cells(plan, light, object, count_cells(plan, &own, &view), error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* Floats know the distance from the light to a surface to 2^-24 of the surface's own size. */
@@ -110,7 +108,6 @@ static abbe_result check_cube(const abbe_scene *scene, const abbe_plan *plan, si
                               abbe_error *error) {
   const abbe_light *from = &scene->light[light];
   abbe_view all[ABBE_LIGHT_CUBE_FACES];
-  abbe_result result = ABBE_OK;
   for (int face = 0; face < ABBE_LIGHT_CUBE_FACES; face++) {
     abbe_light_cube_look(from->position, face, &all[face]);
     for (size_t k = 0; k < plan->refractor_count; k++) {
@@ -119,7 +116,7 @@ static abbe_result check_cube(const abbe_scene *scene, const abbe_plan *plan, si
         abbe_light_cube_fit(&all[face], object);
     }
   }
-  for (size_t k = 0; k < plan->refractor_count && result == ABBE_OK; k++) {
+  for (size_t k = 0; k < plan->refractor_count; k++) {
     const abbe_object *object = &scene->object[plan->refractor_object[k]];
     const unsigned faces = abbe_light_cube_reached(from, object);
     double cells = 0;
@@ -131,21 +128,20 @@ static abbe_result check_cube(const abbe_scene *scene, const abbe_plan *plan, si
       abbe_light_cube_fit(&own, object);
       cells = fmax(cells, count_cells(plan, &own, &all[face]));
     }
-    result = check_distance(scene, from, object, error);
-    if (result == ABBE_OK) result = check_gap(from, object, error);
-    if (result == ABBE_OK) result = check_cells(plan, from, object, cells, error);
+    ABBE_TRY(check_distance(scene, from, object, error));
+    ABBE_TRY(check_gap(from, object, error));
+    ABBE_TRY(check_cells(plan, from, object, cells, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 abbe_result abbe_precision_check(const abbe_scene *scene, const abbe_plan *plan,
                                  abbe_error *error) {
-  abbe_result result = ABBE_OK;
   if (plan->refractor_count == 0 || abbe_method_of(plan->desc.profile)->printed) return ABBE_OK;
-  for (size_t i = 0; i < scene->light_count && result == ABBE_OK; i++)
+  for (size_t i = 0; i < scene->light_count; i++)
     if (plan->reaches[i])
-      result = plan->light_view[i].face >= 0 || plan->desc.faces > 1
+      ABBE_TRY(plan->light_view[i].face >= 0 || plan->desc.faces > 1
                    ? check_cube(scene, plan, i, error)
-                   : check_one_view(scene, plan, &scene->light[i], error);
-  return result;
+                   : check_one_view(scene, plan, &scene->light[i], error));
+  return ABBE_OK;
 }

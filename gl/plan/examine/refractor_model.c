@@ -43,7 +43,7 @@ bool abbe_refractor_films(const abbe_object *object, uint8_t *film) {
   return alike;
 }
 
-bool abbe_refractor_films_by_face(const abbe_object *object) {
+static bool refractor_films_by_face(const abbe_object *object) {
   return object->coatings != NULL && object->coatings->face != NULL &&
          (object->exact.kind != ABBE_EXACT_CONVEX || !abbe_refractor_films(object, NULL));
 }
@@ -95,7 +95,7 @@ static const char *why_in_turn(const abbe_scene *scene, abbe_plan *plan) {
   if (refractors - clouds > 1) return "there is more than one refractor";
   if (clouds > 0) return "clouds in the refractor scatter otherwise than it does";
   if (scene->camera.inside && plan->around_eye != NULL) return "the eye is inside a refractor";
-  if (abbe_refractor_films_by_face(only)) return "films are on some of the refractor's faces";
+  if (refractor_films_by_face(only)) return "films are on some of the refractor's faces";
   const bool exact = only->exact.kind == ABBE_EXACT_SPHERE || only->exact.kind == ABBE_EXACT_CONVEX;
   if (!exact && plan->desc.transport == ABBE_TRANSPORT_PINHOLE)
     return "light of all around is followed from every receiver through a mesh";
@@ -154,8 +154,7 @@ static abbe_refractor_model model_of(const abbe_object *object, const abbe_plan 
     return ABBE_REFRACTOR_CONVEX;
   if (plan->desc.model != ABBE_MODEL_AUTO)
     return (abbe_refractor_model)(plan->desc.model - ABBE_MODEL_SPHERE);
-  if (plan->multi_refractor_paths && abbe_refractor_films_by_face(object))
-    return ABBE_REFRACTOR_BVH;
+  if (plan->multi_refractor_paths && refractor_films_by_face(object)) return ABBE_REFRACTOR_BVH;
   if (object->exact.kind == ABBE_EXACT_SPHERE) return ABBE_REFRACTOR_SPHERE;
   if (object->exact.kind == ABBE_EXACT_CONVEX) return ABBE_REFRACTOR_CONVEX;
   return plan->multi_refractor_paths ? ABBE_REFRACTOR_BVH : ABBE_REFRACTOR_LAYERS;
@@ -176,7 +175,7 @@ static void write_reason(const abbe_object *object, const abbe_plan *plan, char 
     because = plan->desc.model == ABBE_MODEL_LAYERS && object->exact.kind == ABBE_EXACT_CONVEX
                   ? "the object is a convex faceted solid, whose planes say more than layers"
                   : "as asked";
-  } else if (plan->multi_refractor_paths && abbe_refractor_films_by_face(object)) {
+  } else if (plan->multi_refractor_paths && refractor_films_by_face(object)) {
     because = "films are on some of its faces";
   } else if (object->exact.kind == ABBE_EXACT_SPHERE) {
     because = "the object is a sphere";

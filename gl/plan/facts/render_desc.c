@@ -80,13 +80,27 @@ static void fill_in_defaults(size_t width, size_t height, abbe_render_desc *d) {
         d->transport == ABBE_TRANSPORT_VOLUME && d->adaptive > 1 ? 1 : d->supersample;
 }
 
+/* Checks a request that is resolved; ABBE_INVALID_ARGUMENT names the first count that is out of its
+ * limits, and these. */
+static abbe_result render_settings_check(const abbe_render_desc *desc, abbe_error *error) {
+  for (size_t i = 0; i < abbe_render_settings_count; i++) {
+    const abbe_render_setting *s = &abbe_render_settings[i];
+    if (s->kind != ABBE_SETTING_COUNT || s->what == NULL) continue;
+    const size_t value = *(const size_t *)((const char *)desc + s->offset);
+    if ((value == 0 && !s->stays_open) || (double)value > s->most)
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s is %zu; it may be 1 to %.0f", s->what,
+                            value, s->most);
+  }
+  return ABBE_OK;
+}
+
 static abbe_result check_counts(const abbe_render_desc *d, abbe_error *error) {
   enum { PUBLISHED_WAVELENGTHS = 64 };
   if (abbe_method_of(d->profile)->own_passes && d->wavelengths > PUBLISHED_WAVELENGTHS)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the number of wavelengths is %zu; it may be 1 to %d", d->wavelengths,
                           PUBLISHED_WAVELENGTHS);
-  return abbe_render_settings_check(d, error);
+  return render_settings_check(d, error);
 }
 
 static abbe_result check_numbers(const abbe_render_desc *d, abbe_error *error) {
@@ -422,16 +436,4 @@ const size_t abbe_render_settings_count =
 
 void *abbe_render_setting_in(const abbe_render_setting *setting, abbe_render_desc *desc) {
   return (char *)desc + setting->offset;
-}
-
-abbe_result abbe_render_settings_check(const abbe_render_desc *desc, abbe_error *error) {
-  for (size_t i = 0; i < abbe_render_settings_count; i++) {
-    const abbe_render_setting *s = &abbe_render_settings[i];
-    if (s->kind != ABBE_SETTING_COUNT || s->what == NULL) continue;
-    const size_t value = *(const size_t *)((const char *)desc + s->offset);
-    if ((value == 0 && !s->stays_open) || (double)value > s->most)
-      return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s is %zu; it may be 1 to %.0f", s->what,
-                            value, s->most);
-  }
-  return ABBE_OK;
 }

@@ -229,8 +229,4 @@ extern const size_t abbe_render_settings_count;
 /* Where a request holds it: a size_t, double, bool or int by its kind. */
 void *abbe_render_setting_in(const abbe_render_setting *setting, abbe_render_desc *desc);
 
-/* Checks a request that is resolved; ABBE_INVALID_ARGUMENT names the first count that is out of its
- * limits, and these. */
-abbe_result abbe_render_settings_check(const abbe_render_desc *desc, abbe_error *error);
-
 #endif

@@ -302,12 +302,10 @@ abbe_result abbe_cut_mesh_make(const abbe_mesh *mesh, const abbe_view *view, abb
 static abbe_result cut_object(abbe_seen_meshes *seen, const abbe_view *view, size_t i,
                               abbe_error *error) {
   const abbe_object *object = &seen->scene->local->object[i];
-  abbe_mesh cut;
+  ABBE_OWNED(abbe_mesh, cut) = {0};
   if (!abbe_cut_mesh_needed(&object->mesh, object->min, object->max, view)) return ABBE_OK;
-  abbe_result result = abbe_cut_mesh_make(&object->mesh, view, &cut, &seen->face_of[i], error);
-  if (result == ABBE_OK) result = abbe_gpu_mesh_upload(seen->scene, &cut, &seen->cut[i], error);
-  abbe_mesh_free(&cut);
-  return result;
+  ABBE_TRY(abbe_cut_mesh_make(&object->mesh, view, &cut, &seen->face_of[i], error));
+  return abbe_gpu_mesh_upload(seen->scene, &cut, &seen->cut[i], error);
 }
 
 abbe_result abbe_seen_meshes_make(const abbe_gpu_scene *scene, const abbe_view *view,

@@ -88,16 +88,15 @@ abbe_result abbe_band_steps_fill(abbe_band_steps *steps, const abbe_scene *scene
                                  const abbe_plan *plan, const abbe_weights_range *light,
                                  size_t first, size_t end, double from_nm, double to_nm,
                                  abbe_error *error) {
-  abbe_result result = ABBE_OK;
   for (size_t i = first; i < end; i++) {
     const double step = (to_nm - from_nm) / (double)(end - first);
     const double a = from_nm + step * (double)(i - first);
     abbe_weights_range_xyz(light, a, a + step, steps->xyz[i]);
-    for (size_t r = 0; r < steps->surfaces && result == ABBE_OK; r++)
-      result = depth_of(scene, plan, r, steps->path_m[r], a + 0.5 * step,
-                        &steps->depth[r * steps->count + i], error);
+    for (size_t r = 0; r < steps->surfaces; r++)
+      ABBE_TRY(depth_of(scene, plan, r, steps->path_m[r], a + 0.5 * step,
+                        &steps->depth[r * steps->count + i], error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 static double share_at(const abbe_band_share *band, size_t i) {

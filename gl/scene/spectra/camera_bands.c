@@ -418,8 +418,8 @@ static abbe_result fill_set(band_set *s, const abbe_scene *scene, bool shares, b
   level_band level = {.count = s->tables->all.count,
                       .joined = 1,
                       .interleaved = shares && abbe_camera_bands_interleave(s->plan)};
-  abbe_result result = fill_level(s, scene, level, &to, error);
-  while (level.count > 1 && result == ABBE_OK) {
+  ABBE_TRY(fill_level(s, scene, level, &to, error));
+  while (level.count > 1) {
     to.band += level.count;
     to.colour += ABBE_BAND_COLOUR_TEXELS * level.count;
     if (to.texel != NULL) to.texel += ABBE_PART_TEXELS * level.count;
@@ -428,9 +428,9 @@ static abbe_result fill_set(band_set *s, const abbe_scene *scene, bool shares, b
     if (to.glow != NULL) to.glow += ABBE_PART_LIGHT_TEXELS * level.count;
     level.count = (level.count + 1) / 2;
     level.joined *= 2;
-    result = fill_level(s, scene, level, &to, error);
+    ABBE_TRY(fill_level(s, scene, level, &to, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 abbe_result abbe_camera_bands_fill(const abbe_scene *scene, const abbe_plan *plan,

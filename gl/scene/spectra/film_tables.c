@@ -99,11 +99,10 @@ static abbe_result evaluate(const abbe_coating *coating, const abbe_material *ma
   abbe_film_light light;
   const double air[2] = {1, 0};
   double n = 1, ignored;
-  abbe_result result = abbe_coating_at(coating, lambda_nm, layer, error);
-  if (result == ABBE_OK)
-    result = axis < 0 ? abbe_material_n(material, lambda_nm, &n, error)
-                      : abbe_material_n_along(material, axis, lambda_nm, &n, error);
-  for (int i = 0; i < ANGLES && result == ABBE_OK; i++) {
+  ABBE_TRY(abbe_coating_at(coating, lambda_nm, layer, error));
+  ABBE_TRY(axis < 0 ? abbe_material_n(material, lambda_nm, &n, error)
+                    : abbe_material_n_along(material, axis, lambda_nm, &n, error));
+  for (int i = 0; i < ANGLES; i++) {
     const double along = (i - ABBE_FILM_ANGLES) / (double)ABBE_FILM_ANGLES;
     const double beyond = 2 * along / (1 + along * along);
     const double c2 = along < 0 ? -beyond * beyond * (n - 1) * (n + 1) : along * along;
@@ -119,7 +118,7 @@ static abbe_result evaluate(const abbe_coating *coating, const abbe_material *ma
     abbe_film_light_at(layer, coating->count, false, 1, to, along, lambda_nm, &light);
     abbe_film_unpolarised(&light, &out[i][0], &out[i][2]);
   }
-  return result;
+  return ABBE_OK;
 }
 
 static void store(const shares of, float (*texel)[4]) {

@@ -122,6 +122,17 @@ static abbe_result make_coarse(abbe_spectral_tables *t, size_t count, abbe_error
   return ABBE_OK;
 }
 
+/* The material whose index gives how far along from node to node light is laid that first met
+ * refractor i of the plan: its own; of a mirror, which sends all wavelengths in one direction, that
+ * of the first refractor that is none. NULL: there is none. */
+static const abbe_material *mirror_nodes_laid_by(const abbe_scene *scene, const abbe_plan *plan,
+                                                 size_t i) {
+  if (!plan->mirror[i]) return scene->object[plan->refractor_object[i]].material;
+  for (size_t k = 0; k < plan->refractor_count; k++)
+    if (!plan->mirror[k]) return scene->object[plan->refractor_object[k]].material;
+  return NULL;
+}
+
 static abbe_result evaluate_materials(const abbe_scene *scene, const abbe_plan *plan,
                                       abbe_spectral_tables *t, abbe_error *error) {
   const size_t n = t->all.count, refractors = plan->refractor_count;
@@ -132,15 +143,13 @@ static abbe_result evaluate_materials(const abbe_scene *scene, const abbe_plan *
   if (t->index == NULL || t->attenuation == NULL || t->attenuation_550 == NULL || t->mirror == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for spectra");
   for (size_t i = 0; i < refractors; i++) {
-    const abbe_material *material = abbe_mirror_nodes_laid_by(scene, plan, i);
+    const abbe_material *material = mirror_nodes_laid_by(scene, plan, i);
     const abbe_object *object = &scene->object[plan->refractor_object[i]];
     if (plan->mirror[i]) {
       abbe_weights_range light;
       abbe_weights_range_make_by(plan->desc.observer, abbe_scene_illuminant(scene),
                                  t->all.edge_nm[0], t->all.edge_nm[n], &light);
-      abbe_result result =
-          abbe_mirror_nodes_fill(object, &t->all, &light, t->mirror + i * n, error);
-      if (result != ABBE_OK) return result;
+      ABBE_TRY(abbe_mirror_nodes_fill(object, &t->all, &light, t->mirror + i * n, error));
     }
     for (size_t k = 0; k < n; k++) t->index[i * n + k] = 1;
     if (material == NULL) continue;
@@ -370,14 +379,6 @@ abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelen
   return ABBE_OK;
 }
 
-const abbe_material *abbe_mirror_nodes_laid_by(const abbe_scene *scene, const abbe_plan *plan,
-                                               size_t i) {
-  if (!plan->mirror[i]) return scene->object[plan->refractor_object[i]].material;
-  for (size_t k = 0; k < plan->refractor_count; k++)
-    if (!plan->mirror[k]) return scene->object[plan->refractor_object[k]].material;
-  return NULL;
-}
-
 size_t abbe_interval_sums_texels(const abbe_plan *plan) {
   return plan->tints > 0 ? 3 : 2;
 }
@@ -414,7 +415,7 @@ static void weigh_part(const abbe_interval_sums *of, const abbe_weights_range *r
 static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *w,
                           const abbe_weights_range *range, size_t r, size_t i, float (*out)[4]) {
   const abbe_material *material =
-      abbe_mirror_nodes_laid_by(of->scene, of->plan, r % of->plan->refractor_count);
+      mirror_nodes_laid_by(of->scene, of->plan, r % of->plan->refractor_count);
   const size_t texels = abbe_interval_sums_texels(of->plan);
   double min = w->edge_nm[0], max = w->edge_nm[w->count];
   double a = i > 0 ? w->lambda_nm[i - 1] : w->edge_nm[0];

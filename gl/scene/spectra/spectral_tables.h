@@ -40,12 +40,6 @@ abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelen
                                    const abbe_weights_range *light, abbe_mirror_node *out,
                                    abbe_error *error);
 
-/* The material whose index gives how far along from node to node light is laid that first met
- * refractor i of the plan: its own; of a mirror, which sends all wavelengths in one direction, that
- * of the first refractor that is none. NULL: there is none. */
-const abbe_material *abbe_mirror_nodes_laid_by(const abbe_scene *scene, const abbe_plan *plan,
-                                               size_t i);
-
 /* What refractors and mirrors take of the bands of photons' wavelengths, by what a path passed of
  * them (gl/plan/examine/examine.h). */
 

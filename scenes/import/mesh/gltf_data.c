@@ -118,8 +118,8 @@ abbe_result abbe_gltf_reference(const abbe_gltf *g, const cJSON *object, const c
                                 const char *what, const abbe_gltf_list *list, const cJSON **out) {
   size_t index;
   *out = NULL;
-  const abbe_result result = abbe_gltf_whole(g, object, key, what, SIZE_MAX, &index);
-  if (result != ABBE_OK || index == SIZE_MAX) return result;
+  ABBE_TRY(abbe_gltf_whole(g, object, key, what, SIZE_MAX, &index));
+  if (index == SIZE_MAX) return ABBE_OK;
   if (index >= list->count)
     return abbe_gltf_fail(g, ABBE_SCHEMA, "'%s' of %s is %zu, and the file has %zu of them", key,
                           what, index, list->count);
@@ -240,17 +240,12 @@ static abbe_result find_bytes(abbe_gltf *g, const cJSON *object, size_t offset, 
                               size_t *stride, const char **out) {
   const cJSON *view, *buffer;
   size_t start = 0, length = 0, step = 0, index = 0;
-  abbe_result result =
-      abbe_gltf_reference(g, object, "bufferView", "an accessor", &g->views, &view);
-  if (result == ABBE_OK)
-    result = abbe_gltf_reference(g, view, "buffer", "a buffer view", &g->buffers, &buffer);
-  if (result == ABBE_OK)
-    result = abbe_gltf_whole(g, view, "byteOffset", "a buffer view", 0, &start);
-  if (result == ABBE_OK)
-    result = abbe_gltf_whole(g, view, "byteLength", "a buffer view", 0, &length);
-  if (result == ABBE_OK) result = abbe_gltf_whole(g, view, "byteStride", "a buffer view", 0, &step);
-  if (result == ABBE_OK) result = abbe_gltf_whole(g, view, "buffer", "a buffer view", 0, &index);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gltf_reference(g, object, "bufferView", "an accessor", &g->views, &view));
+  ABBE_TRY(abbe_gltf_reference(g, view, "buffer", "a buffer view", &g->buffers, &buffer));
+  ABBE_TRY(abbe_gltf_whole(g, view, "byteOffset", "a buffer view", 0, &start));
+  ABBE_TRY(abbe_gltf_whole(g, view, "byteLength", "a buffer view", 0, &length));
+  ABBE_TRY(abbe_gltf_whole(g, view, "byteStride", "a buffer view", 0, &step));
+  ABBE_TRY(abbe_gltf_whole(g, view, "buffer", "a buffer view", 0, &index));
   if (buffer == NULL) return abbe_gltf_fail(g, ABBE_SCHEMA, "a buffer view names no 'buffer'");
   ABBE_TRY(load(g, index));
   if (stride != NULL && step > 0) *stride = step;
@@ -312,12 +307,9 @@ static abbe_result read_accessor(const abbe_gltf *g, const cJSON *item, const ch
   const char *shape = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(item, "type"));
   *a = (accessor){.item = item, .width = width};
   a->normalised = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(item, "normalized"));
-  abbe_result result = abbe_gltf_whole(g, item, "count", "an accessor", 0, &a->count);
-  if (result == ABBE_OK)
-    result = abbe_gltf_whole(g, item, "componentType", "an accessor", 0, &a->type);
-  if (result == ABBE_OK)
-    result = abbe_gltf_whole(g, item, "byteOffset", "an accessor", 0, &a->offset);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gltf_whole(g, item, "count", "an accessor", 0, &a->count));
+  ABBE_TRY(abbe_gltf_whole(g, item, "componentType", "an accessor", 0, &a->type));
+  ABBE_TRY(abbe_gltf_whole(g, item, "byteOffset", "an accessor", 0, &a->offset));
   if (shape == NULL || strcmp(shape, shapes[width]) != 0 || size_of(a->type) == 0)
     return abbe_gltf_fail(g, ABBE_SCHEMA,
                           "the accessor of '%s' is '%.20s' of component type %zu; it is %s of 5120 "
@@ -354,22 +346,19 @@ static abbe_result take_sparse(abbe_gltf *g, const accessor *a, double *out) {
   size_t count = 0, type = 0, offset[2] = {0};
   const char *index = NULL, *value = NULL;
   if (sparse == NULL) return ABBE_OK;
-  abbe_result result = abbe_gltf_whole(g, sparse, "count", "a sparse accessor", 0, &count);
-  if (result == ABBE_OK)
-    result = abbe_gltf_whole(g, where, "componentType", "sparse indices", 0, &type);
-  if (result == ABBE_OK)
-    result = abbe_gltf_whole(g, where, "byteOffset", "sparse indices", 0, &offset[0]);
-  if (result == ABBE_OK)
-    result = abbe_gltf_whole(g, what, "byteOffset", "sparse values", 0, &offset[1]);
-  if (result != ABBE_OK || count == 0) return result;
+  ABBE_TRY(abbe_gltf_whole(g, sparse, "count", "a sparse accessor", 0, &count));
+  ABBE_TRY(abbe_gltf_whole(g, where, "componentType", "sparse indices", 0, &type));
+  ABBE_TRY(abbe_gltf_whole(g, where, "byteOffset", "sparse indices", 0, &offset[0]));
+  ABBE_TRY(abbe_gltf_whole(g, what, "byteOffset", "sparse values", 0, &offset[1]));
+  if (count == 0) return ABBE_OK;
   const size_t size = size_of(type), own = a->width * size_of(a->type);
   if (count > a->count || size == 0 || type == FLOAT ||
       cJSON_GetObjectItemCaseSensitive(where, "bufferView") == NULL ||
       cJSON_GetObjectItemCaseSensitive(what, "bufferView") == NULL)
     return abbe_gltf_fail(g, ABBE_SCHEMA, "a sparse accessor is not well formed");
-  result = find_bytes(g, where, offset[0], count * size, NULL, &index);
-  if (result == ABBE_OK) result = find_bytes(g, what, offset[1], count * own, NULL, &value);
-  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+  ABBE_TRY(find_bytes(g, where, offset[0], count * size, NULL, &index));
+  ABBE_TRY(find_bytes(g, what, offset[1], count * own, NULL, &value));
+  for (size_t i = 0; i < count; i++) {
     const double at = value_at(index + i * size, type, false);
     if (!(at >= 0 && at < (double)a->count))
       return abbe_gltf_fail(g, ABBE_SCHEMA, "a sparse accessor of %zu elements replaces number %g",
@@ -378,7 +367,7 @@ static abbe_result take_sparse(abbe_gltf *g, const accessor *a, double *out) {
       out[(size_t)at * a->width + k] =
           value_at(value + i * own + k * size_of(a->type), a->type, a->normalised);
   }
-  return result;
+  return ABBE_OK;
 }
 
 abbe_result abbe_gltf_values(abbe_gltf *g, const cJSON *attributes, const char *key, size_t width,

@@ -58,8 +58,8 @@ static abbe_result check_morphs(abbe_gltf *g, const cJSON *node, const cJSON *me
   const cJSON *weights = own ? own : cJSON_GetObjectItemCaseSensitive(mesh, "weights");
   if (cJSON_GetObjectItemCaseSensitive(primitive, "targets") == NULL) return ABBE_OK;
   /* many nodes and primitives may use one long list */
-  const abbe_result result = abbe_gltf_charge(g, (size_t)cJSON_GetArraySize(weights), 1);
-  if (result != ABBE_OK || !has_weight(weights)) return result;
+  ABBE_TRY(abbe_gltf_charge(g, (size_t)cJSON_GetArraySize(weights), 1));
+  if (!has_weight(weights)) return ABBE_OK;
   return abbe_gltf_fail(g, ABBE_UNSUPPORTED,
                         "a mesh is morphed (its 'targets' have 'weights' that are not 0), which is "
                         "not read; apply them where the mesh was made");
@@ -89,10 +89,8 @@ static void primitive_free(primitive *p) {
 static abbe_result read_primitive(abbe_gltf *g, const cJSON *item, primitive *p) {
   const cJSON *attributes = cJSON_GetObjectItemCaseSensitive(item, "attributes"), *places;
   size_t normals = 0, uvs = 0;
-  abbe_result result =
-      abbe_gltf_reference(g, attributes, "POSITION", "a primitive", &g->accessors, &places);
-  if (result == ABBE_OK && places != NULL &&
-      cJSON_GetObjectItemCaseSensitive(places, "bufferView") == NULL &&
+  ABBE_TRY(abbe_gltf_reference(g, attributes, "POSITION", "a primitive", &g->accessors, &places));
+  if (places != NULL && cJSON_GetObjectItemCaseSensitive(places, "bufferView") == NULL &&
       cJSON_GetObjectItemCaseSensitive(places, "sparse") == NULL)
     return abbe_gltf_fail(g, ABBE_UNSUPPORTED,
                           "the positions of a primitive have neither a 'bufferView' nor 'sparse' "
@@ -101,13 +99,10 @@ static abbe_result read_primitive(abbe_gltf *g, const cJSON *item, primitive *p)
                               ? ": they are compressed by KHR_draco_mesh_compression, which is not "
                                 "read; write it without"
                               : "");
-  if (result == ABBE_OK)
-    result = abbe_gltf_values(g, attributes, "POSITION", 3, &p->point, &p->points);
-  if (result == ABBE_OK)
-    result = abbe_gltf_values(g, attributes, "NORMAL", 3, &p->normal, &normals);
-  if (result == ABBE_OK) result = abbe_gltf_values(g, attributes, "TEXCOORD_0", 2, &p->uv, &uvs);
-  if (result == ABBE_OK) result = abbe_gltf_values(g, item, "indices", 1, &p->index, &p->indices);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gltf_values(g, attributes, "POSITION", 3, &p->point, &p->points));
+  ABBE_TRY(abbe_gltf_values(g, attributes, "NORMAL", 3, &p->normal, &normals));
+  ABBE_TRY(abbe_gltf_values(g, attributes, "TEXCOORD_0", 2, &p->uv, &uvs));
+  ABBE_TRY(abbe_gltf_values(g, item, "indices", 1, &p->index, &p->indices));
   if ((p->normal && normals != p->points) || (p->uv && uvs != p->points))
     return abbe_gltf_fail(g, ABBE_SCHEMA,
                           "a primitive has %zu positions, %zu normals and %zu texture coordinates; "
@@ -166,9 +161,8 @@ static abbe_result add_primitive(abbe_gltf *g, const primitive *p, const double 
   enum { LIST = 4, STRIP = 5 };
   const size_t first = g->to->point.count, step = p->mode == LIST ? 3 : 1;
   const bool mirrored = abbe_transform_determinant3(matrix) < 0;
-  abbe_result result = abbe_gltf_charge(g, p->points, 3);
-  if (result == ABBE_OK) result = abbe_gltf_charge(g, p->indices, 1);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gltf_charge(g, p->points, 3));
+  ABBE_TRY(abbe_gltf_charge(g, p->indices, 1));
   if (first + p->points > ABBE_MESH_MAX_VERTICES || !add_vertices(g->to, p, matrix))
     return abbe_mesh_reading_no_memory(g->to, g->error);
   for (size_t i = 0; i + 2 < p->indices; i += step) {
@@ -246,12 +240,9 @@ static abbe_result read_instances(abbe_gltf *g, const cJSON *node, instances *ou
   size_t count[3] = {0};
   *out = (instances){.count = 1};
   if (extension == NULL) return ABBE_OK;
-  abbe_result result = abbe_gltf_values(g, attributes, "TRANSLATION", 3, &out->place, &count[0]);
-  if (result == ABBE_OK)
-    result = abbe_gltf_values(g, attributes, "ROTATION", 4, &out->rotation, &count[1]);
-  if (result == ABBE_OK)
-    result = abbe_gltf_values(g, attributes, "SCALE", 3, &out->scale, &count[2]);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gltf_values(g, attributes, "TRANSLATION", 3, &out->place, &count[0]));
+  ABBE_TRY(abbe_gltf_values(g, attributes, "ROTATION", 4, &out->rotation, &count[1]));
+  ABBE_TRY(abbe_gltf_values(g, attributes, "SCALE", 3, &out->scale, &count[2]));
   const bool has[3] = {out->place != NULL, out->rotation != NULL, out->scale != NULL};
   out->count = has[0] ? count[0] : has[1] ? count[1] : count[2];
   for (int k = 0; k < 3; k++)
@@ -375,24 +366,19 @@ static abbe_result make_lists(abbe_gltf *g) {
                                    &g->accessors, &g->views,  &g->buffers};
   static const char *const names[] = {"nodes",     "meshes",      "materials",
                                       "accessors", "bufferViews", "buffers"};
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < sizeof lists / sizeof *lists && result == ABBE_OK; i++)
-    result = abbe_gltf_list_make(g, g->json.root, names[i], lists[i]);
-  if (result != ABBE_OK) return result;
+  for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
+    ABBE_TRY(abbe_gltf_list_make(g, g->json.root, names[i], lists[i]));
   g->buffer = calloc(g->buffers.count + 1, sizeof *g->buffer);
   return g->buffer != NULL ? ABBE_OK : abbe_mesh_reading_no_memory(g->to, g->error);
 }
 
 abbe_result abbe_gltf_read(abbe_mesh_reading *to, const char *data, size_t size,
                            abbe_error *error) {
-  abbe_gltf g = {.to = to, .loaded = size, .error = error};
-  abbe_result result = abbe_gltf_json_parse(to->path, data, size, &g.json, error);
-  if (result == ABBE_OK) result = check_extensions(&g);
-  if (result == ABBE_OK) result = make_lists(&g);
-  bool *visited = result == ABBE_OK ? calloc(2 * g.nodes.count + 1, sizeof *visited) : NULL;
-  if (result == ABBE_OK && visited == NULL) result = abbe_mesh_reading_no_memory(to, error);
-  if (result == ABBE_OK) result = walk_scene(&g, visited, visited + g.nodes.count);
-  free(visited);
-  abbe_gltf_free(&g);
-  return result;
+  ABBE_OWNED(abbe_gltf, g) = {.to = to, .loaded = size, .error = error};
+  ABBE_TRY(abbe_gltf_json_parse(to->path, data, size, &g.json, error));
+  ABBE_TRY(check_extensions(&g));
+  ABBE_TRY(make_lists(&g));
+  ABBE_FREED bool *visited = calloc(2 * g.nodes.count + 1, sizeof *visited);
+  if (visited == NULL) ABBE_TRY(abbe_mesh_reading_no_memory(to, error));
+  return walk_scene(&g, visited, visited + g.nodes.count);
 }

@@ -47,12 +47,9 @@ static double per_um2(double lambda_nm) {
 
 static abbe_result read_index(const reading *r, const cJSON *material, abbe_material *out) {
   double n_d = 1.5, dispersion = 0; /* the extensions' defaults */
-  abbe_result result =
-      get(r, abbe_gltf_extension(material, "KHR_materials_ior"), "ior", 0, 100, &n_d);
-  if (result == ABBE_OK)
-    result = get(r, abbe_gltf_extension(material, "KHR_materials_dispersion"), "dispersion", 0,
-                 ABBE_GLTF_MOST_DISPERSION, &dispersion);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(get(r, abbe_gltf_extension(material, "KHR_materials_ior"), "ior", 0, 100, &n_d));
+  ABBE_TRY(get(r, abbe_gltf_extension(material, "KHR_materials_dispersion"), "dispersion", 0,
+               ABBE_GLTF_MOST_DISPERSION, &dispersion));
   if (!(n_d >= 1))
     return abbe_error_set(r->error, ABBE_UNSUPPORTED,
                           "%s: material '%.80s': an 'ior' of %g stands for no refraction by an "
@@ -75,9 +72,8 @@ static abbe_result read_volume(const reading *r, const cJSON *material, abbe_mat
   const cJSON *volume = abbe_gltf_extension(material, "KHR_materials_volume");
   const cJSON *colour = cJSON_GetObjectItemCaseSensitive(volume, "attenuationColor");
   double thickness = 0, distance = INFINITY, left[3] = {1, 1, 1};
-  abbe_result result = get(r, volume, "thicknessFactor", 0, 1e12, &thickness);
-  if (result == ABBE_OK) result = get(r, volume, "attenuationDistance", 1e-12, 1e300, &distance);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(get(r, volume, "thicknessFactor", 0, 1e12, &thickness));
+  ABBE_TRY(get(r, volume, "attenuationDistance", 1e-12, 1e300, &distance));
   if (!(thickness > 0))
     return abbe_error_set(r->error, ABBE_UNSUPPORTED,
                           "%s: material '%.80s' is a thin wall, not a solid: its "
@@ -123,9 +119,8 @@ static void read_warning(const cJSON *material, char *text, size_t size) {
 
 static abbe_result read_material(const reading *r, const cJSON *material, abbe_material *out) {
   char text[512];
-  abbe_result result = read_index(r, material, out);
-  if (result == ABBE_OK) result = read_volume(r, material, out);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_index(r, material, out));
+  ABBE_TRY(read_volume(r, material, out));
   out->temperature_c = NAN;
   out->name = strdup(r->name);
   snprintf(text, sizeof text, "[glTFDispersion] %.400s", abbe_file_name(r->path));

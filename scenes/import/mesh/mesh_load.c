@@ -80,20 +80,17 @@ static abbe_result take_others(abbe_mesh_reading *r, char **others, abbe_error *
 
 static abbe_result read_file(const char *path, const char *material, abbe_mesh *out, char **others,
                              abbe_error *error) {
-  abbe_mesh_reading r = {.path = path, .material = material};
+  ABBE_OWNED(abbe_mesh_reading, r) = {.path = path, .material = material};
   reader *read = reader_of(path);
-  char *data = NULL;
+  ABBE_FREED char *data = NULL;
   size_t size = 0;
   if (read == NULL)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%s: meshes are read from .obj, .ply, .stl, .gltf and .glb files", path);
-  abbe_result result = abbe_file_read(path, ABBE_MESH_FILES_MOST, &data, &size, error);
-  if (result == ABBE_OK) result = read(&r, data, size, error);
-  free(data);
-  if (result == ABBE_OK) result = abbe_mesh_reading_finish(&r, out, error);
-  if (result == ABBE_OK) result = take_others(&r, others, error);
-  abbe_mesh_reading_free(&r);
-  return result;
+  ABBE_TRY(abbe_file_read(path, ABBE_MESH_FILES_MOST, &data, &size, error));
+  ABBE_TRY(read(&r, data, size, error));
+  ABBE_TRY(abbe_mesh_reading_finish(&r, out, error));
+  return take_others(&r, others, error);
 }
 
 abbe_result abbe_mesh_load(const char *path, abbe_mesh_normals normals, abbe_mesh *out,

@@ -138,11 +138,11 @@ static abbe_result cut(const abbe_mesh_reading *r, const features *has, size_t f
   const abbe_mesh_corner *corner = (const abbe_mesh_corner *)r->corner.item + first;
   for (size_t k = 0; k < sides && sides > 3; k++)
     memcpy(place[k], point[corner[k].point], sizeof *place);
-  const abbe_result result = abbe_polygon_cut((const double(*)[3])place, sides, face, work, error);
-  for (size_t t = 0; t + 2 < sides && result == ABBE_OK; t++)
+  ABBE_TRY(abbe_polygon_cut((const double(*)[3])place, sides, face, work, error));
+  for (size_t t = 0; t + 2 < sides; t++)
     for (int k = 0; k < 3; k++)
       face[t][k] = has->split ? (uint32_t)first + face[t][k] : corner[face[t][k]].point;
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result cut_all(const abbe_mesh_reading *r, const features *has, size_t longest,

@@ -178,14 +178,13 @@ static abbe_result read_line(reading *r) {
 static abbe_result read_text(abbe_mesh_reading *to, const char *data, size_t size,
                              abbe_error *error) {
   reading r = {.to = to, .at = data, .end = data + size, .error = error};
-  abbe_result result = ABBE_OK;
   to->line = 1;
   r.wanted = to->material == NULL;
-  while (r.at < r.end && result == ABBE_OK) {
-    result = read_line(&r);
-    if (result == ABBE_OK) skip_line(&r);
+  while (r.at < r.end) {
+    ABBE_TRY(read_line(&r));
+    skip_line(&r);
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* A byte-order mark tells of UTF-16, or is no part of the first line. */
@@ -195,10 +194,8 @@ abbe_result abbe_obj_read(abbe_mesh_reading *to, const char *data, size_t size, 
   for (size_t i = 0; i < 3; i++)
     marked = marked || (size >= strlen(marks[i]) && memcmp(data, marks[i], strlen(marks[i])) == 0);
   if (!marked) return read_text(to, data, size, error);
-  char *text = NULL;
+  ABBE_FREED char *text = NULL;
   size_t length = 0;
-  abbe_result result = abbe_encoding_decode(data, size, &text, &length, error);
-  if (result == ABBE_OK) result = read_text(to, text, length, error);
-  free(text);
-  return result;
+  ABBE_TRY(abbe_encoding_decode(data, size, &text, &length, error));
+  return read_text(to, text, length, error);
 }

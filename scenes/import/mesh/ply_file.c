@@ -425,13 +425,11 @@ static abbe_result read_body(reading *r, abbe_error *error) {
 }
 
 abbe_result abbe_ply_read(abbe_mesh_reading *to, const char *data, size_t size, abbe_error *error) {
-  reading *r = calloc(1, sizeof *r);
+  ABBE_FREED reading *r = calloc(1, sizeof *r);
   if (r == NULL) return abbe_mesh_reading_no_memory(to, error);
   r->to = to;
   r->at = data;
   r->end = data + size;
-  abbe_result result = read_header(r, size, error);
-  if (result == ABBE_OK) result = read_body(r, error);
-  free(r);
-  return result;
+  ABBE_TRY(read_header(r, size, error));
+  return read_body(r, error);
 }

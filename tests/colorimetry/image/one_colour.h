@@ -6,8 +6,6 @@
 
 #include "colorimetry/image/display_ocio.h"
 
-HOLDS(abbe_display);
-
 /* rgb is replaced. */
 static inline void show(const abbe_display_desc *desc, double rgb[3]) {
   static const char *const names[] = {"R", "G", "B"};

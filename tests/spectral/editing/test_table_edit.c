@@ -9,8 +9,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-HOLDS(abbe_table_edit);
-
 static const char two[] = "# Two glasses\n"
                           "description: two\n"
                           "\n"

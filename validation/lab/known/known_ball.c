@@ -73,12 +73,10 @@ static abbe_result add_focus(abbe_known_run *run, abbe_known_stage *stage, doubl
   } lines[] = {{"F", ABBE_LINE_F_NM}, {"d", ABBE_LINE_D_NM}, {"C", ABBE_LINE_C_NM}};
   double exact[3];
   mean traced[3];
-  abbe_result result = ABBE_OK;
-  for (int l = 0; l < 3 && result == ABBE_OK; l++) {
+  for (int l = 0; l < 3; l++) {
     double n = 0;
-    result = abbe_known_stage_n(stage, lines[l].lambda_nm, &n, error);
-    if (result == ABBE_OK) result = focus(stage, radius, lines[l].lambda_nm, &traced[l], error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_known_stage_n(stage, lines[l].lambda_nm, &n, error));
+    ABBE_TRY(focus(stage, radius, lines[l].lambda_nm, &traced[l], error));
     exact[l] = abbe_closed_form_ball_focus(radius, n);
     abbe_known_answer row = {.unit = "mm",
                              .exact = 1e3 * exact[l],
@@ -88,9 +86,8 @@ static abbe_result add_focus(abbe_known_run *run, abbe_known_stage *stage, doubl
                              .reason = focus_reason};
     snprintf(row.quantity, sizeof row.quantity, "n-bk7, R = 5 mm, focal length at %s",
              lines[l].name);
-    result = abbe_known_add(run, row, error);
+    ABBE_TRY(abbe_known_add(run, row, error));
   }
-  if (result != ABBE_OK) return result;
   abbe_known_answer row = {.unit = "mm",
                            .exact = 1e3 * (exact[2] - exact[0]),
                            .traced = 1e3 * (traced[2].value - traced[0].value),

@@ -309,7 +309,6 @@ static abbe_result add_ray(abbe_known_run *run, const ray_row *row, abbe_error *
 }
 
 abbe_result abbe_known_derive(abbe_known_run *run, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < RAYS && result == ABBE_OK; i++) result = add_ray(run, &rays[i], error);
-  return result;
+  for (int i = 0; i < RAYS; i++) ABBE_TRY(add_ray(run, &rays[i], error));
+  return ABBE_OK;
 }

@@ -76,7 +76,7 @@ static abbe_result make_even(abbe_environment *e, size_t texels, abbe_error *err
 /* texels: in place of the setting's environment, even light of 2 from so many around; 0: none. */
 static abbe_result add_setting(abbe_known_run *run, const setting *s, size_t texels, double from,
                                double to, abbe_error *error) {
-  abbe_scene scene = {0};
+  ABBE_OWNED(abbe_scene, scene) = {0};
   const abbe_known_setting known = {.what = s->what,
                                     .unit = s->channel ? "W/(m2 sr)" : "W",
                                     .reason = reason,
@@ -86,12 +86,10 @@ static abbe_result add_setting(abbe_known_run *run, const setting *s, size_t tex
                                     .samples = 1 << 19,
                                     .side = s->camera == low_camera ? 64 : 16,
                                     .channel = s->channel};
-  abbe_result result = abbe_known_scene(&scene, error, "camera: %s\nenvironment: %s\nobjects:\n%s",
-                                        s->camera, s->environment, s->objects);
-  if (result == ABBE_OK && texels > 0) result = make_even(scene.environment, texels, error);
-  if (result == ABBE_OK) result = abbe_known_add_setting(run, &known, &scene, from, to, error);
-  abbe_scene_free(&scene);
-  return result;
+  ABBE_TRY(abbe_known_scene(&scene, error, "camera: %s\nenvironment: %s\nobjects:\n%s", s->camera,
+                            s->environment, s->objects));
+  if (texels > 0) ABBE_TRY(make_even(scene.environment, texels, error));
+  return abbe_known_add_setting(run, &known, &scene, from, to, error);
 }
 
 static abbe_result add_even(abbe_known_run *run, size_t texels, double from, double to,
@@ -107,13 +105,12 @@ abbe_result abbe_known_environment(abbe_known_run *run, abbe_error *error) {
   static const size_t texels[] = {64, 1024, 4096, ABBE_RADIANCE_MAP_MAX_WIDTH};
   const int count = sizeof settings / sizeof *settings;
   const int all = count + (int)(sizeof texels / sizeof *texels);
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < all && result == ABBE_OK; i++) {
+  for (int i = 0; i < all; i++) {
     const double from = (double)i / all, to = (i + 1.0) / all;
-    result = i < count ? add_setting(run, &settings[i], 0, from, to, error)
-                       : add_even(run, texels[i - count], from, to, error);
+    ABBE_TRY(i < count ? add_setting(run, &settings[i], 0, from, to, error)
+                       : add_even(run, texels[i - count], from, to, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* A white furnace: where the same light comes from everywhere, clear glass cannot be seen. */
@@ -180,7 +177,7 @@ static const char furnace_reason[] =
 
 static abbe_result add_room(abbe_known_run *run, const room *r, double from, double to,
                             abbe_error *error) {
-  abbe_scene scene = {0};
+  ABBE_OWNED(abbe_scene, scene) = {0};
   char what[sizeof((abbe_known_answer){0}).quantity];
   snprintf(what, sizeof what, "%s, mean radiance of the picture", r->what);
   const abbe_known_setting known = {.what = what,
@@ -192,10 +189,8 @@ static abbe_result add_room(abbe_known_run *run, const room *r, double from, dou
                                     .samples = 1 << 16,
                                     .side = r->side,
                                     .channel = "Y"};
-  abbe_result result = abbe_known_scene(&scene, error, "%s%s", furnace_head, r->objects);
-  if (result == ABBE_OK) result = abbe_known_add_setting(run, &known, &scene, from, to, error);
-  abbe_scene_free(&scene);
-  return result;
+  ABBE_TRY(abbe_known_scene(&scene, error, "%s%s", furnace_head, r->objects));
+  return abbe_known_add_setting(run, &known, &scene, from, to, error);
 }
 
 abbe_result abbe_known_furnace(abbe_known_run *run, abbe_error *error) {

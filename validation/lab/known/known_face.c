@@ -204,9 +204,8 @@ abbe_result abbe_known_film(abbe_known_run *run, abbe_error *error) {
       {"water in air", 1, 1.33, 0, 100, 1, 0, 's', false},
       {"water in air", 1, 1.33, 0, 5, 1, 0, 's', false},
   };
-  abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
     for (double nm = rows[i].three ? 450 : 550; nm < (rows[i].three ? 700 : 600); nm += 100)
-      if (result == ABBE_OK) result = add_film(run, &rows[i], nm, error);
-  return result;
+      ABBE_TRY(add_film(run, &rows[i], nm, error));
+  return ABBE_OK;
 }

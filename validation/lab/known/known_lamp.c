@@ -16,16 +16,14 @@ static const char reason[] = "as improbable as four standard errors, taken from 
 
 static abbe_result add_text(abbe_known_run *run, abbe_known_setting s, const char *text, work w,
                             abbe_error *error) {
-  abbe_scene scene = {0};
+  ABBE_OWNED(abbe_scene, scene) = {0};
   s.unit = "W/(m2 sr)";
   s.reason = reason;
   s.side = s.side > 0 ? s.side : 16;
   s.slack = 1e-3 * fabs(s.exact);
   s.useful = 3e-2 * fabs(s.exact);
-  abbe_result result = abbe_known_scene(&scene, error, "%s", text);
-  if (result == ABBE_OK) result = abbe_known_add_setting(run, &s, &scene, w.from, w.to, error);
-  abbe_scene_free(&scene);
-  return result;
+  ABBE_TRY(abbe_known_scene(&scene, error, "%s", text));
+  return abbe_known_add_setting(run, &s, &scene, w.from, w.to, error);
 }
 
 /* ---- form factors ---- */
@@ -220,17 +218,16 @@ static abbe_result add_pinhole(abbe_known_run *run, bool spread, work w, abbe_er
 abbe_result abbe_known_lamp(abbe_known_run *run, abbe_error *error) {
   static const double at[] = {-0.7, -0.3, 0.3, 0.7};
   enum { FIRST = 4, PENUMBRAS = 8, RUNS = FIRST + PENUMBRAS + 3 };
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < RUNS && result == ABBE_OK; i++) {
+  for (int i = 0; i < RUNS; i++) {
     const work w = {(double)i / RUNS, (i + 1.0) / RUNS};
     const int k = i - FIRST;
-    result = i == 0           ? add_disk(run, w, error)
+    ABBE_TRY(i == 0           ? add_disk(run, w, error)
              : i == 1         ? add_rectangle(run, w, error)
              : i == 2         ? add_mirror_disk(run, w, error)
              : i == 3         ? add_mirror_square(run, w, error)
              : k < PENUMBRAS  ? add_penumbra(run, k < 4, at[k % 4], w, error)
              : k == PENUMBRAS ? add_seen_in_mirror(run, w, error)
-                              : add_pinhole(run, k == PENUMBRAS + 2, w, error);
+                              : add_pinhole(run, k == PENUMBRAS + 2, w, error));
   }
-  return result;
+  return ABBE_OK;
 }

@@ -53,11 +53,11 @@ static abbe_result one_pass(abbe_tracer *tracer, const abbe_rings *rings, double
                             double (*mean)[3], double (*sum)[3], abbe_error *error) {
   double before[ABBE_RINGS_MAX][3];
   memcpy(before, mean, rings->count * sizeof *mean);
-  abbe_result result = abbe_tracer_pass(tracer, NULL, error);
-  if (result == ABBE_OK) result = sum_so_far(tracer, rings, mean, error);
-  for (size_t i = 0; i < rings->count && result == ABBE_OK; i++)
+  ABBE_TRY(abbe_tracer_pass(tracer, NULL, error));
+  ABBE_TRY(sum_so_far(tracer, rings, mean, error));
+  for (size_t i = 0; i < rings->count; i++)
     for (int c = 0; c < 3; c++) sum[i][c] = k * mean[i][c] - (k - 1) * before[i][c];
-  return result;
+  return ABBE_OK;
 }
 
 abbe_result abbe_known_measure(const abbe_known_run *run, double from, double to,
@@ -69,15 +69,14 @@ abbe_result abbe_known_measure(const abbe_known_run *run, double from, double to
   d.map_height = rings->height;
   d.layout = &rings->layout;
   double mean[ABBE_RINGS_MAX][3] = {{0}};
-  abbe_tracer *tracer = NULL;
-  abbe_result result = abbe_tracer_make(scene, &d, &tracer, error);
-  for (size_t p = 0; p < passes && result == ABBE_OK; p++) {
-    result = one_pass(tracer, rings, (double)p + 1, mean, sum + p * rings->count, error);
+  ABBE_HELD(abbe_tracer, tracer) = NULL;
+  ABBE_TRY(abbe_tracer_make(scene, &d, &tracer, error));
+  for (size_t p = 0; p < passes; p++) {
+    ABBE_TRY(one_pass(tracer, rings, (double)p + 1, mean, sum + p * rings->count, error));
     double done = from + (to - from) * (double)(p + 1) / (double)passes;
-    if (result == ABBE_OK) result = abbe_known_progress(run, done, error);
+    ABBE_TRY(abbe_known_progress(run, done, error));
   }
-  abbe_tracer_free(tracer);
-  return result;
+  return ABBE_OK;
 }
 
 void abbe_known_mean(double (*sum)[3], size_t passes, size_t rings, size_t first, size_t end,

@@ -158,7 +158,7 @@ static abbe_result add_reached(abbe_known_run *run, double from, double to, abbe
 static abbe_result add_pencil(abbe_known_run *run, const char *material, double from, double to,
                               abbe_error *error) {
   char what[112];
-  abbe_scene scene = {0};
+  ABBE_OWNED(abbe_scene, scene) = {0};
   abbe_known_setting row = {.what = what,
                             .unit = "share",
                             .exact = -expm1(-0.3),
@@ -168,7 +168,7 @@ static abbe_result add_pencil(abbe_known_run *run, const char *material, double 
                             .side = 8,
                             .channel = "turned"};
   snprintf(what, sizeof what, "of a beam through 10 mm of haze of 30/m in %s, scattered", material);
-  abbe_result result = abbe_known_scene(
+  ABBE_TRY(abbe_known_scene(
       &scene, error,
       "camera: {eye: [0, -2, 0], target: [0, 0, -1]}\n"
       "lights: [{name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1}]\n"
@@ -176,12 +176,10 @@ static abbe_result add_pencil(abbe_known_run *run, const char *material, double 
       "- {name: pane, shape: box, size: [1, 1, 0.01], material: %s, medium: {scattering: 30}}\n"
       "- {name: floor, shape: rectangle, width: 4, height: 4, reflectance: 0.5,\n"
       "   transform: [{translate: [0, 0, -1]}]}\n",
-      material);
+      material));
   row.slack = 1e-6;
   row.useful = 1e-2 * row.exact;
-  if (result == ABBE_OK) result = abbe_known_add_setting(run, &row, &scene, from, to, error);
-  abbe_scene_free(&scene);
-  return result;
+  return abbe_known_add_setting(run, &row, &scene, from, to, error);
 }
 
 /* ---- a light in mist ---- */
@@ -280,12 +278,10 @@ static double seen_from_within(const shaft *s) {
 }
 
 static abbe_result index_of_water(double *n, abbe_error *error) {
-  abbe_known_stage stage;
-  abbe_result result = abbe_known_stage_make(
-      &stage, error, "- {name: ball, shape: sphere, radius: 1, levels: 1, material: water}\n");
-  if (result == ABBE_OK) result = abbe_known_stage_n(&stage, middle_nm, n, error);
-  abbe_known_stage_free(&stage);
-  return result;
+  ABBE_OWNED(abbe_known_stage, stage) = {0};
+  ABBE_TRY(abbe_known_stage_make(
+      &stage, error, "- {name: ball, shape: sphere, radius: 1, levels: 1, material: water}\n"));
+  return abbe_known_stage_n(&stage, middle_nm, n, error);
 }
 
 static abbe_result add_shaft(abbe_known_run *run, bool above, double from, double to,
@@ -297,8 +293,7 @@ static abbe_result add_shaft(abbe_known_run *run, bool above, double from, doubl
   abbe_scene scene = {0};
   double n = 0;
   shaft s = {0};
-  abbe_result result = index_of_water(&n, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(index_of_water(&n, error));
   enter_water(0.8, 0.5, n, &s);
   abbe_known_setting row = {
       .what = above ? "sunlight in still water, seen straight from above: photons gathered"
@@ -312,10 +307,11 @@ static abbe_result add_shaft(abbe_known_run *run, bool above, double from, doubl
   row.exact =
       above ? shaft_radiance(&s, 0, down, 0.4) / (n * n) * (1 - abbe_closed_form_fresnel(0, n))
             : seen_from_within(&s);
-  result = above ? water_scene("eye: [0, 0, 2], target: [0, 0, 0], up: [0, 1, 0]", 4, &s, "",
-                               &scene, error)
-                 : water_scene("eye: [-0.3, 0, -0.2], target: [1, 0, -0.2], inside: true", 30, &s,
-                               wall, &scene, error);
+  abbe_result result = above
+                           ? water_scene("eye: [0, 0, 2], target: [0, 0, 0], up: [0, 1, 0]", 4, &s,
+                                         "", &scene, error)
+                           : water_scene("eye: [-0.3, 0, -0.2], target: [1, 0, -0.2], inside: true",
+                                         30, &s, wall, &scene, error);
   return add_row(run, &row, 5e-2, result, &scene, from, to, error);
 }
 
@@ -362,18 +358,17 @@ abbe_result abbe_known_medium(abbe_known_run *run, abbe_error *error) {
        .view_deg = 50,
        .below = true}};
   enum { SLABS = sizeof slabs / sizeof *slabs };
-  abbe_result result = add_phase(run, 0, error);
-  if (result == ABBE_OK) result = add_phase(run, 0.8f, error);
-  if (result == ABBE_OK) result = add_phase(run, -0.5f, error);
-  for (int i = 0; i < SLABS && result == ABBE_OK; i++)
-    result = add_slab(run, &slabs[i], 0.05 * i, 0.05 * (i + 1), error);
-  if (result == ABBE_OK) result = add_left(run, 0.2, 0.22, error);
-  if (result == ABBE_OK) result = add_reached(run, 0.22, 0.26, error);
-  if (result == ABBE_OK) result = add_pencil(run, "air", 0.26, 0.28, error);
-  if (result == ABBE_OK) result = add_cube(run, 0.28, 0.3, error);
-  if (result == ABBE_OK) result = add_lamp(run, 0, 0.3, 0.35, error);
-  if (result == ABBE_OK) result = add_lamp(run, 0.7, 0.35, 0.4, error);
-  if (result == ABBE_OK) result = add_shaft(run, false, 0.4, 0.8, error);
-  if (result == ABBE_OK) result = add_shaft(run, true, 0.8, 1, error);
-  return result;
+  ABBE_TRY(add_phase(run, 0, error));
+  ABBE_TRY(add_phase(run, 0.8f, error));
+  ABBE_TRY(add_phase(run, -0.5f, error));
+  for (int i = 0; i < SLABS; i++)
+    ABBE_TRY(add_slab(run, &slabs[i], 0.05 * i, 0.05 * (i + 1), error));
+  ABBE_TRY(add_left(run, 0.2, 0.22, error));
+  ABBE_TRY(add_reached(run, 0.22, 0.26, error));
+  ABBE_TRY(add_pencil(run, "air", 0.26, 0.28, error));
+  ABBE_TRY(add_cube(run, 0.28, 0.3, error));
+  ABBE_TRY(add_lamp(run, 0, 0.3, 0.35, error));
+  ABBE_TRY(add_lamp(run, 0.7, 0.35, 0.4, error));
+  ABBE_TRY(add_shaft(run, false, 0.4, 0.8, error));
+  return add_shaft(run, true, 0.8, 1, error);
 }

@@ -102,7 +102,7 @@ static abbe_result add_ball(abbe_known_run *run, double degrees, work w, abbe_er
   const double r = 0.02, beam = 1e4, angle = degrees * ABBE_PI / 180,
                half = 0.7 * tan(20 * ABBE_PI / 180);
   const double x = sin(angle), z = -cos(angle); /* from the beam's own direction on */
-  abbe_scene scene = {0};
+  ABBE_OWNED(abbe_scene, scene) = {0};
   abbe_known_setting s = caustic;
   char what[96];
   abbe_number_format(what, sizeof what, "mirror ball, light sent %g degrees off the beam", degrees);
@@ -115,7 +115,7 @@ static abbe_result add_ball(abbe_known_run *run, double degrees, work w, abbe_er
     const double light = ball_light(r, p, d);
     s.exact += 0.8 * beam / ABBE_PI * light * (d[0] * x + d[2] * z) / (STEPS * STEPS);
   }
-  abbe_result result = abbe_known_scene(
+  ABBE_TRY(abbe_known_scene(
       &scene, error,
       "camera: {eye: [%.17g, 0, %.17g], target: [%.17g, 0, %.17g], up: [0, 1, 0], fov: 40}\n"
       "lights: [{name: sun, kind: directional, direction: [0, 0, -1], irradiance: %g}]\n"
@@ -123,10 +123,8 @@ static abbe_result add_ball(abbe_known_run *run, double degrees, work w, abbe_er
       "- {name: ball, shape: sphere, radius: %g, mirror: 0.8}\n"
       "- {name: screen, shape: rectangle, width: 0.54, height: 0.54, reflectance: 1,\n"
       "   transform: [{look: {from: [%.17g, 0, %.17g], to: [0, 0, 0], up: [0, 1, 0]}}]}\n",
-      0.3 * x, 0.3 * z, x, z, beam, r, x, z);
-  if (result == ABBE_OK) result = add_run(run, s, &scene, w, error);
-  abbe_scene_free(&scene);
-  return result;
+      0.3 * x, 0.3 * z, x, z, beam, r, x, z));
+  return add_run(run, s, &scene, w, error);
 }
 
 static const char between_mirrors[] =
@@ -138,34 +136,32 @@ static const char between_mirrors[] =
 /* A light between two mirrors shines as its images do, each by 0.8 fainter than the one before. */
 static abbe_result add_images(abbe_known_run *run, work w, abbe_error *error) {
   const double lamp = 0.1, height = 0.5, x = -0.15, half = 0.3;
-  abbe_scene scene = {0};
+  ABBE_OWNED(abbe_scene, scene) = {0};
   abbe_known_setting s = caustic;
   s.what = "lamp between two mirrors of 0.8, its images' light on the floor";
   for (int k = 1; k < 60; k++)
     for (int side = -1; side <= 1; side += 2)
       s.exact += pow(0.8, k) / ABBE_PI *
                  mean_irradiance(side * k + (k % 2 ? -lamp : lamp), height, x, half);
-  abbe_result result = abbe_known_scene(
+  ABBE_TRY(abbe_known_scene(
       &scene, error,
       "camera: {eye: [%g, 0, 2], target: [%g, 0, 0], up: [0, 1, 0], fov: %.17g}\n"
       "lights: [{name: lamp, kind: point, position: [%g, 0, %g], intensity: 1}]\n"
       "objects:\n"
       "- {name: floor, shape: rectangle, width: 20, height: 20, reflectance: 1}\n%s",
-      x, x, 2 * atan(half / 2) * 180 / ABBE_PI, lamp, height, between_mirrors);
-  if (result == ABBE_OK) result = add_run(run, s, &scene, w, error);
-  abbe_scene_free(&scene);
-  return result;
+      x, x, 2 * atan(half / 2) * 180 / ABBE_PI, lamp, height, between_mirrors));
+  return add_run(run, s, &scene, w, error);
 }
 
 /* A ray of 45 degrees meets the mirrors 1 m apart four times before it leaves them. */
 static abbe_result add_passage(abbe_known_run *run, work w, abbe_error *error) {
-  abbe_scene scene = {0};
+  ABBE_OWNED(abbe_scene, scene) = {0};
   abbe_known_setting s = caustic;
   s.what = "uniform light seen by four reflections between two mirrors of 0.8";
   s.channel = "Y";
   s.samples = 1 << 16;
   s.exact = 2 * pow(0.8, 4);
-  abbe_result result = abbe_known_scene(
+  ABBE_TRY(abbe_known_scene(
       &scene, error,
       "camera: {eye: [0.25, 0, 0], target: [0.75, 0, -0.5], fov: 1}\n"
       "environment: {size: 64, uniform: 2}\n"
@@ -175,10 +171,8 @@ static abbe_result add_passage(abbe_known_run *run, work w, abbe_error *error) {
       "- {name: below, shape: rectangle, width: 4, height: 4, mirror: 0.8,\n"
       "   transform: [{translate: [2, 0, -0.5]}]}\n"
       "- {name: above, shape: rectangle, width: 4, height: 4, mirror: 0.8,\n"
-      "   transform: [{translate: [2, 0, 0.5]}]}\n");
-  if (result == ABBE_OK) result = add_run(run, s, &scene, w, error);
-  abbe_scene_free(&scene);
-  return result;
+      "   transform: [{translate: [2, 0, 0.5]}]}\n"));
+  return add_run(run, s, &scene, w, error);
 }
 
 /* ---- the ring ---- */
@@ -205,7 +199,7 @@ static abbe_result add_ring(abbe_known_run *run, const place *p, work w, abbe_er
   const double at[2] = {RADIUS * p->at[0], RADIUS * p->at[1]}, half = RADIUS * p->half;
   abbe_catacaustic c = {.radius = RADIUS, .height = RADIUS * p->height, .elevation = e};
   for (int k = 0; k < 3; k++) c.lamp[k] = RADIUS * p->lamp[k];
-  abbe_scene scene = {0};
+  ABBE_OWNED(abbe_scene, scene) = {0};
   abbe_known_setting s = caustic;
   size_t branches;
   char what[112], light[160];
@@ -220,7 +214,7 @@ static abbe_result add_ring(abbe_known_run *run, const place *p, work w, abbe_er
     abbe_number_format(light, sizeof light,
                        "kind: point, position: [%.17g, %.17g, %.17g], intensity: 1", c.lamp[0],
                        c.lamp[1], c.lamp[2]);
-  abbe_result result = abbe_known_scene(
+  ABBE_TRY(abbe_known_scene(
       &scene, error,
       "camera: {eye: [%.17g, %.17g, %.17g], target: [%.17g, %.17g, 0], up: [0, 1, 0], fov: "
       "%.17g}\n"
@@ -230,22 +224,20 @@ static abbe_result add_ring(abbe_known_run *run, const place *p, work w, abbe_er
       "- {name: ring, shape: lathe, around: 2048, profile: [[%.17g, 0], [%.17g, %.17g]],\n"
       "   mirror: 0.9}\n",
       at[0], at[1], away, at[0], at[1], 2 * atan(half / away) * 180 / ABBE_PI, light, c.radius,
-      c.radius, c.height);
-  if (result == ABBE_OK) result = add_run(run, s, &scene, w, error);
-  abbe_scene_free(&scene);
-  return result;
+      c.radius, c.height));
+  return add_run(run, s, &scene, w, error);
 }
 
 abbe_result abbe_known_mirror(abbe_known_run *run, abbe_error *error) {
   static const double degrees[] = {30, 90, 120, 150};
   enum { BALLS = 4, RINGS = sizeof places / sizeof *places, RUNS = BALLS + 2 + RINGS };
-  abbe_result result = add_metals(run, error);
-  for (int i = 0; i < RUNS && result == ABBE_OK; i++) {
+  ABBE_TRY(add_metals(run, error));
+  for (int i = 0; i < RUNS; i++) {
     const work w = {(double)i / RUNS, (i + 1.0) / RUNS};
-    result = i < BALLS        ? add_ball(run, degrees[i], w, error)
+    ABBE_TRY(i < BALLS        ? add_ball(run, degrees[i], w, error)
              : i == BALLS     ? add_images(run, w, error)
              : i == BALLS + 1 ? add_passage(run, w, error)
-                              : add_ring(run, &places[i - BALLS - 2], w, error);
+                              : add_ring(run, &places[i - BALLS - 2], w, error));
   }
-  return result;
+  return ABBE_OK;
 }

@@ -95,10 +95,8 @@ static double polarised(double angle, double n, bool across) {
 static abbe_result exact_of_crystal(const pane *p, const abbe_material *material, double *reflected,
                                     double *passed, abbe_error *error) {
   double n[2], angle = p->degrees / ABBE_KNOWN_DEGREES, r, t;
-  abbe_result result = abbe_material_n(material, p->lambda_nm, &n[0], error);
-  if (result == ABBE_OK)
-    result = abbe_material_n_extraordinary(material, p->lambda_nm, &n[1], error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_material_n(material, p->lambda_nm, &n[0], error));
+  ABBE_TRY(abbe_material_n_extraordinary(material, p->lambda_nm, &n[1], error));
   for (int wave = 0; wave < 2; wave++) {
     const double slanted = p->thickness / cos(asin(sin(angle) / n[wave]));
     const double per_m = abbe_material_attenuation_along(material, wave == 1 ? 2 : 0, p->lambda_nm);
@@ -246,11 +244,10 @@ abbe_result abbe_known_pane(abbe_known_run *run, abbe_error *error) {
 }
 
 abbe_result abbe_known_sheets(abbe_known_run *run, double to, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < SHEETS && result == ABBE_OK; i++)
-    result = add_share(run, &sheets[i].pane, sheets[i].reflected, to * i / SHEETS,
-                       to * (i + 1) / SHEETS, error);
-  return result;
+  for (int i = 0; i < SHEETS; i++)
+    ABBE_TRY(add_share(run, &sheets[i].pane, sheets[i].reflected, to * i / SHEETS,
+                       to * (i + 1) / SHEETS, error));
+  return ABBE_OK;
 }
 
 abbe_result abbe_known_absorption(abbe_known_run *run, abbe_error *error) {
@@ -269,12 +266,9 @@ static abbe_result add_turn(abbe_known_run *run, const nest *it, abbe_known_stag
                             double height, abbe_error *error) {
   const double from[3] = {height, 0, 3}, down[3] = {0, 0, -1};
   double n = 0, core_n = 0, traced = NAN;
-  abbe_result result = abbe_known_stage_n(stage, ABBE_LINE_D_NM, &n, error);
-  if (result == ABBE_OK)
-    result = abbe_material_n(stage->scene.object[1].material, ABBE_LINE_D_NM, &core_n, error);
-  if (result == ABBE_OK)
-    result = abbe_known_follow(stage, from, down, ABBE_LINE_D_NM, "tttt", error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_known_stage_n(stage, ABBE_LINE_D_NM, &n, error));
+  ABBE_TRY(abbe_material_n(stage->scene.object[1].material, ABBE_LINE_D_NM, &core_n, error));
+  ABBE_TRY(abbe_known_follow(stage, from, down, ABBE_LINE_D_NM, "tttt", error));
   /* The way out of the ball is the vertex before the last; towards the axis is towards -x. */
   if (stage->count >= 3) {
     const double *d = stage->vertex[stage->count - 2].direction;
@@ -300,11 +294,10 @@ abbe_result abbe_known_nest(abbe_known_run *run, abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (int i = 0; i < 2 && result == ABBE_OK; i++) {
     abbe_known_stage stage;
-    result = abbe_known_stage_make(&stage, error,
+    ABBE_TRY(abbe_known_stage_make(&stage, error,
                                    "- {name: ball, shape: sphere, radius: 1, material: n-bk7}\n"
                                    "- {name: core, shape: sphere, radius: %g, material: %s}\n",
-                                   nests[i].share, nests[i].core);
-    if (result != ABBE_OK) return result;
+                                   nests[i].share, nests[i].core));
     for (int k = 0; k < 4 && heights[i][k] > 0 && result == ABBE_OK; k++)
       result = add_turn(run, &nests[i], &stage, heights[i][k], error);
     abbe_known_stage_free(&stage);

@@ -191,8 +191,7 @@ static abbe_result add_rows(abbe_known_run *run, const view_of *v, bool all,
                             const abbe_rings *rings, double (*sum)[3], size_t passes,
                             const double *exact, abbe_error *error) {
   const double floor = v->through ? 5e-3 : 1e-3;
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < RINGS && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < RINGS; i++) {
     double mean = 0, spread = 0, area = 0, e[2] = {rings->edge[i], rings->edge[i + 1]};
     abbe_known_mean(sum, passes, RINGS, i, i + 1, all ? 0 : 1, &mean, &spread);
     area = ABBE_PI * (e[1] - e[0]) * (e[1] + e[0]);
@@ -209,9 +208,9 @@ static abbe_result add_rows(abbe_known_run *run, const view_of *v, bool all,
     abbe_number_format(row.quantity, sizeof row.quantity, "fused-silica, %s, %s%s, ring %g-%g R",
                        v->light > 0 ? "point 3 R up" : "beam", all ? "all light" : "the caustic",
                        v->through ? " through a pane" : "", e[0] / RADIUS, e[1] / RADIUS);
-    result = abbe_known_add(run, row, error);
+    ABBE_TRY(abbe_known_add(run, row, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 abbe_result abbe_known_picture_setting(abbe_known_run *run, size_t index, abbe_error *error) {

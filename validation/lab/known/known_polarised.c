@@ -30,7 +30,7 @@ static const char reason[] =
 static abbe_result add(abbe_known_run *run, const char *what, double exact, double lambda_nm,
                        const char *channel, const char *text, abbe_error *error) {
   const bool seen = strcmp(channel, "Y") == 0;
-  abbe_scene scene = {0};
+  ABBE_OWNED(abbe_scene, scene) = {0};
   const abbe_known_setting setting = {.what = what,
                                       .unit = seen ? "W/(m2 sr)" : "share",
                                       .reason = reason,
@@ -42,10 +42,8 @@ static abbe_result add(abbe_known_run *run, const char *what, double exact, doub
                                       .polarised = true,
                                       .side = seen ? 24 : 8,
                                       .channel = channel};
-  abbe_result result = abbe_known_scene(&scene, error, "%s", text);
-  if (result == ABBE_OK) result = abbe_known_add_setting(run, &setting, &scene, FIRST, 1, error);
-  abbe_scene_free(&scene);
-  return result;
+  ABBE_TRY(abbe_known_scene(&scene, error, "%s", text));
+  return abbe_known_add_setting(run, &setting, &scene, FIRST, 1, error);
 }
 
 /* Malus: half of cos^2 of the angle between two sheets. */
@@ -337,14 +335,13 @@ abbe_result abbe_known_polarised(abbe_known_run *run, abbe_error *error) {
   static const double angles[] = {0, 30, 90};
   static const char *const stones[] = {"diamond", "calcite", "topaz"};
   static const int plates[] = {1, 4, 10};
-  abbe_result result = abbe_known_sheets(run, FIRST, error);
-  for (int i = 0; i < 3 && result == ABBE_OK; i++) result = add_sheets(run, angles[i], error);
-  for (int i = 0; i < 9 && result == ABBE_OK; i++)
-    result = add_pile(run, plates[i / 3], i % 3, error);
-  for (int i = 0; i < 2 && result == ABBE_OK; i++) result = add_mirrors(run, i == 1, error);
-  for (int i = 0; i < 2 && result == ABBE_OK; i++) result = add_both_ways(run, i == 1, error);
-  for (int i = 0; i < 2 && result == ABBE_OK; i++) result = add_tourmaline(run, i == 1, error);
-  for (int i = 0; i < 2 && result == ABBE_OK; i++) result = add_turned(run, i == 1, error);
-  for (int i = 0; i < 3 && result == ABBE_OK; i++) result = add_furnace(run, stones[i], error);
-  return result;
+  ABBE_TRY(abbe_known_sheets(run, FIRST, error));
+  for (int i = 0; i < 3; i++) ABBE_TRY(add_sheets(run, angles[i], error));
+  for (int i = 0; i < 9; i++) ABBE_TRY(add_pile(run, plates[i / 3], i % 3, error));
+  for (int i = 0; i < 2; i++) ABBE_TRY(add_mirrors(run, i == 1, error));
+  for (int i = 0; i < 2; i++) ABBE_TRY(add_both_ways(run, i == 1, error));
+  for (int i = 0; i < 2; i++) ABBE_TRY(add_tourmaline(run, i == 1, error));
+  for (int i = 0; i < 2; i++) ABBE_TRY(add_turned(run, i == 1, error));
+  for (int i = 0; i < 3; i++) ABBE_TRY(add_furnace(run, stones[i], error));
+  return ABBE_OK;
 }

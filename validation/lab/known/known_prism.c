@@ -118,8 +118,7 @@ abbe_result abbe_known_prism(abbe_known_run *run, abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (int g = 0; g < 4 && result == ABBE_OK; g++) {
     abbe_known_stage stage;
-    result = abbe_known_stage_make(&stage, error, prism_text, glasses[g]);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_known_stage_make(&stage, error, prism_text, glasses[g]));
     for (int l = 0; l < 3 && result == ABBE_OK; l++)
       result = add_least(run, &stage, glasses[g], lines[l].name, lines[l].lambda_nm, error);
     abbe_known_stage_free(&stage);
@@ -185,13 +184,12 @@ abbe_result abbe_known_slit(abbe_known_run *run, abbe_error *error) {
   const double *d = w.d.direction, at[2] = {w.d.exit[0] + d[0], w.d.exit[1] + d[1]};
   to_world(at, APEX_Z, from);
   to_world(w.d.exit, APEX_Z, to);
-  result = abbe_known_stage_make(
+  ABBE_TRY(abbe_known_stage_make(
       &stage, error,
       "- {name: prism, shape: prism, apex: 60, side: 0.04, length: 0.06, material: sf10}\n"
       "- {name: wall, shape: rectangle, width: 1, height: 1, reflectance: 0.5,\n"
       "   transform: [{look: {from: [%.17g, %.17g, %.17g], to: [%.17g, %.17g, %.17g]}}]}\n",
-      from[0], from[1], from[2], to[0], to[1], to[2]);
-  if (result != ABBE_OK) return result;
+      from[0], from[1], from[2], to[0], to[1], to[2]));
   for (int nm = 400; nm <= 700 && result == ABBE_OK; nm += 50)
     result = add_position(run, &stage, &w, nm, error);
   if (result == ABBE_OK) result = add_position(run, &stage, &w, ABBE_LINE_D_NM, error);

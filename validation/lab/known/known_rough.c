@@ -76,8 +76,6 @@ static abbe_result add(abbe_known_run *run, double alpha, bool inside, bool refl
 
 abbe_result abbe_known_rough(abbe_known_run *run, abbe_error *error) {
   static const double alpha[] = {0.001, 0.1, 0.3, 0.5, 1};
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < 20 && result == ABBE_OK; i++)
-    result = add(run, alpha[i / 4], i % 4 > 1, i % 2 == 0, error);
-  return result;
+  for (int i = 0; i < 20; i++) ABBE_TRY(add(run, alpha[i / 4], i % 4 > 1, i % 2 == 0, error));
+  return ABBE_OK;
 }

@@ -168,15 +168,13 @@ static abbe_result add_part(abbe_known_run *run, const setting *s, const char *w
 static abbe_result add_rows(abbe_known_run *run, const setting *s, const abbe_rings *rings,
                             double (*sum)[3], size_t passes, const double (*exact)[3],
                             int first_channel, int end_channel, abbe_error *error) {
-  abbe_result result = ABBE_OK;
   for (int c = first_channel; c < end_channel; c++) {
-    for (size_t i = 0; i < rings->count && result == ABBE_OK; i++)
-      result = add_part(run, s, "ring", rings, sum, passes, exact, (part){i, i + 1, c}, error);
-    if (result == ABBE_OK)
-      result =
-          add_part(run, s, "circle", rings, sum, passes, exact, (part){0, rings->count, c}, error);
+    for (size_t i = 0; i < rings->count; i++)
+      ABBE_TRY(add_part(run, s, "ring", rings, sum, passes, exact, (part){i, i + 1, c}, error));
+    ABBE_TRY(
+        add_part(run, s, "circle", rings, sum, passes, exact, (part){0, rings->count, c}, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* ---- runs ---- */
@@ -204,14 +202,14 @@ static abbe_result expect_white(const setting *s, const abbe_scene *scene, const
   double radius[RADII], xyz[RADII][3], flux[RINGS];
   abbe_sphere_setup setup = setup_of(s, 10);
   abbe_rings_radii(rings, radius);
-  abbe_result result = abbe_sphere_quadrature_xyz(
-      &setup, scene->object[0].material, &scene->light[0].illuminant, ABBE_WAVELENGTH_MIN_NM,
-      ABBE_WAVELENGTH_MAX_NM, BANDS, radius, RADII, xyz, error);
-  for (int c = 0; c < 3 && result == ABBE_OK; c++) {
+  ABBE_TRY(abbe_sphere_quadrature_xyz(&setup, scene->object[0].material,
+                                      &scene->light[0].illuminant, ABBE_WAVELENGTH_MIN_NM,
+                                      ABBE_WAVELENGTH_MAX_NM, BANDS, radius, RADII, xyz, error));
+  for (int c = 0; c < 3; c++) {
     abbe_rings_expect(rings, &xyz[0][c], 3, flux);
     for (int i = 0; i < RINGS; i++) exact[i][c] = flux[i];
   }
-  return result;
+  return ABBE_OK;
 }
 
 typedef struct share {
@@ -339,8 +337,7 @@ static double sure(double values) {
 static abbe_result add_levels(abbe_known_run *run, double (*sum)[3], size_t passes, size_t photons,
                               const double (*exact)[3], abbe_error *error) {
   double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;
-  abbe_result result = ABBE_OK;
-  for (size_t level = 0, count = 1; level < LEVELS && result == ABBE_OK; level++, count *= 2) {
+  for (size_t level = 0, count = 1; level < LEVELS; level++, count *= 2) {
     double rms = rms_error(sum, passes, count, exact), expected;
     /* Rings share the photons: three of the four are free. */
     double blocks = (double)(passes / count), relative = sure(3 * blocks);
@@ -359,7 +356,7 @@ static abbe_result add_levels(abbe_known_run *run, double (*sum)[3], size_t pass
                   "three of them free"};
     snprintf(row.quantity, sizeof row.quantity, "error of the rings after %zu photons, %zu runs",
              count * photons, passes / count);
-    result = abbe_known_add(run, row, error);
+    ABBE_TRY(abbe_known_add(run, row, error));
   }
   double determinant = w * wxx - wx * wx;
   abbe_known_answer row = {.unit = "power",
@@ -370,7 +367,7 @@ static abbe_result add_levels(abbe_known_run *run, double (*sum)[3], size_t pass
                            .useful = 0.1,
                            .reason = "four standard errors of the slope through the points above"};
   snprintf(row.quantity, sizeof row.quantity, "slope of the error over the photons, both as logs");
-  return result == ABBE_OK ? abbe_known_add(run, row, error) : result;
+  return abbe_known_add(run, row, error);
 }
 
 /* Error over stated standard error, which with so few passes follows Student's distribution. */

@@ -118,8 +118,7 @@ static const char light_reason[] =
 static abbe_result add_bins(abbe_known_run *run, const abbe_wave_caustic *w, double (*sum)[3],
                             size_t passes, abbe_error *error) {
   const double area = 2 * w->wavelength * w->wavelength / BINS;
-  abbe_result result = ABBE_OK;
-  for (size_t b = 0; b < BINS && result == ABBE_OK; b++) {
+  for (size_t b = 0; b < BINS; b++) {
     double mean, spread;
     const double from = 0.5 * w->wavelength * (double)b / BINS;
     const size_t rays = abbe_wave_caustic_branches(w, from + 0.25 * w->wavelength / BINS, 20000);
@@ -136,9 +135,9 @@ static abbe_result add_bins(abbe_known_run *run, const abbe_wave_caustic *w, dou
                        "light %.2g m under that wave, %.3g to %.3g mm off the crest: %zu ray%s",
                        w->depth, 1e3 * from, 1e3 * (from + 0.5 * w->wavelength / BINS), rays,
                        rays == 1 ? "" : "s");
-    result = abbe_known_add(run, row, error);
+    ABBE_TRY(abbe_known_add(run, row, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result add_light(abbe_known_run *run, double depth, double from, double to,
@@ -183,9 +182,9 @@ static abbe_result add_light(abbe_known_run *run, double depth, double from, dou
  * [BornWolf1999, 4.8] */
 static abbe_result add_seen(abbe_known_run *run, double from, double to, abbe_error *error) {
   const double angle = 60 / ABBE_KNOWN_DEGREES, depth = 0.1, middle_nm = 560;
-  abbe_scene scene = {0};
+  ABBE_OWNED(abbe_scene, scene) = {0};
   double n = 0;
-  abbe_result result = abbe_known_scene(
+  ABBE_TRY(abbe_known_scene(
       &scene, error,
       "camera: {eye: [0, 0, 2], target: [0, 0, 0], up: [0, 1, 0], fov: 2}\n"
       "lights: [{name: sun, kind: directional, direction: [%.17g, 0, %.17g], irradiance: 1}]\n"
@@ -193,8 +192,8 @@ static abbe_result add_seen(abbe_known_run *run, double from, double to, abbe_er
       "- {name: water, shape: water, size: [1, 1, %.17g], material: water}\n"
       "- {name: bottom, shape: rectangle, width: 2, height: 2, reflectance: 1,\n"
       "   transform: [{translate: [0, 0, %.17g]}]}\n",
-      sin(angle), -cos(angle), depth + 0.01, -depth);
-  if (result == ABBE_OK) result = abbe_material_n(scene.object[0].material, middle_nm, &n, error);
+      sin(angle), -cos(angle), depth + 0.01, -depth));
+  ABBE_TRY(abbe_material_n(scene.object[0].material, middle_nm, &n, error));
   abbe_known_setting s = {.what = "the bottom under 10 cm of still water, seen straight from above",
                           .unit = "W/(m2 sr)",
                           .reason = "as improbable as four standard errors, taken from the spread "
@@ -203,17 +202,13 @@ static abbe_result add_seen(abbe_known_run *run, double from, double to, abbe_er
                           .samples = 1 << 22,
                           .side = 16,
                           .channel = "Y"};
-  if (result == ABBE_OK) {
-    const double way = 1 + 1 / cos(asin(sin(angle) / n));
-    const double per_m = abbe_material_attenuation(scene.object[0].material, middle_nm);
-    s.exact = cos(angle) * (1 - abbe_closed_form_fresnel(angle, n)) *
-              (1 - abbe_closed_form_fresnel(0, n)) * exp(-per_m * depth * way) / (n * n) / ABBE_PI;
-    s.slack = 2e-3 * s.exact;
-    s.useful = 5e-2 * s.exact;
-    result = abbe_known_add_setting(run, &s, &scene, from, to, error);
-  }
-  abbe_scene_free(&scene);
-  return result;
+  const double way = 1 + 1 / cos(asin(sin(angle) / n));
+  const double per_m = abbe_material_attenuation(scene.object[0].material, middle_nm);
+  s.exact = cos(angle) * (1 - abbe_closed_form_fresnel(angle, n)) *
+            (1 - abbe_closed_form_fresnel(0, n)) * exp(-per_m * depth * way) / (n * n) / ABBE_PI;
+  s.slack = 2e-3 * s.exact;
+  s.useful = 5e-2 * s.exact;
+  return abbe_known_add_setting(run, &s, &scene, from, to, error);
 }
 
 /* From under water: a ceiling that shines alike everywhere, n^2 times as bright through Fresnel's
@@ -221,9 +216,9 @@ static abbe_result add_seen(abbe_known_run *run, double from, double to, abbe_er
 static abbe_result add_below(abbe_known_run *run, bool mirrored, double from, double to,
                              abbe_error *error) {
   const double middle_nm = 560, pi = ABBE_PI;
-  abbe_scene scene = {0};
+  ABBE_OWNED(abbe_scene, scene) = {0};
   double n = 0;
-  abbe_result result = abbe_known_scene(
+  ABBE_TRY(abbe_known_scene(
       &scene, error,
       "ambient: %.17g\n"
       "camera: {eye: [0, 0, -0.2], target: [%g, 0, 0.4], up: [0, 1, 0], fov: 2, inside: true}\n"
@@ -234,8 +229,8 @@ static abbe_result add_below(abbe_known_run *run, bool mirrored, double from, do
       "   transform: [{translate: [0, 0, -0.4]}]}\n"
       "- {name: ceiling, shape: rectangle, width: 9, height: 9, reflectance: 1,\n"
       "   transform: [{translate: [0, 0, 1]}]}\n",
-      pi, mirrored ? 1.2 : 0, mirrored ? 0.5 : 0);
-  if (result == ABBE_OK) result = abbe_material_n(scene.object[0].material, middle_nm, &n, error);
+      pi, mirrored ? 1.2 : 0, mirrored ? 0.5 : 0));
+  ABBE_TRY(abbe_material_n(scene.object[0].material, middle_nm, &n, error));
   const double through = n * n * (1 - abbe_closed_form_fresnel(0, n));
   abbe_known_setting s = {.what = mirrored ? "from under water, the bottom in the surface's mirror"
                                            : "from under water, the sky straight above",
@@ -249,9 +244,7 @@ static abbe_result add_below(abbe_known_run *run, bool mirrored, double from, do
                           .channel = "Y"};
   s.slack = 2e-3 * s.exact;
   s.useful = 3e-2 * s.exact;
-  if (result == ABBE_OK) result = abbe_known_add_setting(run, &s, &scene, from, to, error);
-  abbe_scene_free(&scene);
-  return result;
+  return abbe_known_add_setting(run, &s, &scene, from, to, error);
 }
 
 abbe_result abbe_known_water(abbe_known_run *run, abbe_error *error) {

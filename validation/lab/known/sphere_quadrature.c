@@ -389,15 +389,14 @@ abbe_result abbe_sphere_quadrature_xyz(const abbe_sphere_setup *setup,
                           "wavelengths ascending",
                           bands, min_nm, max_nm, MAX_BANDS);
   for (size_t i = 0; i < count; i++) xyz[i][0] = xyz[i][1] = xyz[i][2] = 0;
-  abbe_result result = ABBE_OK;
   double width = (max_nm - min_nm) / (double)bands;
-  for (size_t i = 0; i < bands && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < bands; i++) {
     double from = min_nm + width * (double)i, weight[3];
     abbe_sphere_setup one = *setup;
     abbe_weights_band_xyz(illuminant, min_nm, max_nm, from, from + width, weight);
     one.attenuation_per_m = abbe_material_attenuation(material, from + width / 2);
-    result = abbe_material_n(material, from + width / 2, &one.index, error);
-    if (result == ABBE_OK) result = add_band(&one, weight, radius_m, count, xyz, error);
+    ABBE_TRY(abbe_material_n(material, from + width / 2, &one.index, error));
+    ABBE_TRY(add_band(&one, weight, radius_m, count, xyz, error));
   }
-  return result;
+  return ABBE_OK;
 }

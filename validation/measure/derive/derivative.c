@@ -262,10 +262,9 @@ static abbe_result start_line(const abbe_derivative_desc *q, size_t part_index, 
   const size_t row = q->light * q->sampling->steps + step;
   for (int c = 0; c < 3; c++) l->xyz[c] = (double)q->sampling->xyz[row][c];
   const double lambda_nm = abbe_spectral_sampling_lambda(q->sampling, step, within);
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < 1 + 2 * q->keys && result == ABBE_OK; i++)
-    result = abbe_specular_wave_make(scene_of(l, i), lambda_nm, &l->wave[i], error);
-  return result;
+  for (size_t i = 0; i < 1 + 2 * q->keys; i++)
+    ABBE_TRY(abbe_specular_wave_make(scene_of(l, i), lambda_nm, &l->wave[i], error));
+  return ABBE_OK;
 }
 
 static abbe_result run_part(const abbe_derivative_desc *q, size_t index, part *to,

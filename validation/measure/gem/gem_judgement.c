@@ -32,9 +32,8 @@ abbe_result abbe_gem_orientation_judge(const abbe_gem_stone *stone, const abbe_w
   turned.media.axis = axis;
   turned.media.frame = frame;
   const abbe_gem_axes axes = abbe_gem_orientation_axes(stone, out->tilt_rad, out->azimuth_rad);
-  abbe_result result = abbe_gem_stone_turn(&turned, &axes, error);
-  if (result == ABBE_OK) result = abbe_gem_view_make(&turned, weights, desc, &view, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_gem_stone_turn(&turned, &axes, error));
+  ABBE_TRY(abbe_gem_view_make(&turned, weights, desc, &view, error));
   out->value = abbe_gem_view_amount(&view, measure);
   for (int c = 0; c < 3; c++) xyz[c] = abbe_gem_sums_ratio(&view.colour[c]).value;
   abbe_difference_lab(xyz, weights->sum, out->lab);
@@ -48,16 +47,15 @@ static abbe_result judge_orientations(const abbe_gem_stone *stone, const abbe_we
   static const double tilt[] = {0, ABBE_PI / 2, ABBE_PI / 2}, azimuth[] = {0, 0, ABBE_PI / 2};
   enum { LEAST = 8 };
   abbe_gem_view_desc view = *desc;
-  abbe_result result = ABBE_OK;
   view.side = j->view.side / 2 > LEAST ? j->view.side / 2 : LEAST;
   j->is_crystal = abbe_media_is_crystal(&stone->media, 0);
   j->is_biaxial = abbe_media_is_biaxial(&stone->media, 0);
-  for (int i = 0; i < ABBE_GEM_ORIENTATIONS && j->is_crystal && result == ABBE_OK; i++) {
+  for (int i = 0; i < ABBE_GEM_ORIENTATIONS && j->is_crystal; i++) {
     j->orientation[i] = (abbe_gem_orientation){.tilt_rad = tilt[i], .azimuth_rad = azimuth[i]};
-    result =
-        abbe_gem_orientation_judge(stone, weights, &view, ABBE_GEM_ISO, &j->orientation[i], error);
+    ABBE_TRY(
+        abbe_gem_orientation_judge(stone, weights, &view, ABBE_GEM_ISO, &j->orientation[i], error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* There are many tilts: an eighth of the view's side each. */

@@ -24,15 +24,12 @@ typedef struct work {
 
 static abbe_result make_stone(const work *w, const abbe_cut *cut, abbe_gem_stone *out,
                               abbe_error *error) {
-  abbe_cut_polyhedron p = {0};
-  abbe_result result = abbe_cut_polyhedron_make(cut, 0, &p, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_gem_stone_make(cut, &p, w->material, w->wavelengths, w->desc->width_m, out, error);
-  if (result == ABBE_OK && abbe_vector_length(w->desc->axes.z) > 0)
-    result = abbe_gem_stone_turn(out, &w->desc->axes, error);
-  abbe_cut_polyhedron_free(&p);
-  return result;
+  ABBE_OWNED(abbe_cut_polyhedron, p) = {0};
+  ABBE_TRY(abbe_cut_polyhedron_make(cut, 0, &p, error));
+  ABBE_TRY(abbe_gem_stone_make(cut, &p, w->material, w->wavelengths, w->desc->width_m, out, error));
+  if (abbe_vector_length(w->desc->axes.z) > 0)
+    ABBE_TRY(abbe_gem_stone_turn(out, &w->desc->axes, error));
+  return ABBE_OK;
 }
 
 /* Frees the stone. */
@@ -162,11 +159,13 @@ abbe_result abbe_gem_optimum_begin(const abbe_cut *cut, const abbe_cut_polyhedro
   return result;
 }
 
-abbe_result abbe_gem_optimum_judge(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
-                                   const abbe_material *material,
-                                   const abbe_wavelengths *wavelengths, const abbe_weights *weights,
-                                   const abbe_gem_optimum_desc *desc, abbe_gem_optimum *optimum,
-                                   size_t i, abbe_error *error) {
+/* Judges pair i of a search that has begun with the same. Errors as those of find, and
+ * ABBE_INVALID_ARGUMENT for a pair that is not there. */
+static abbe_result gem_optimum_judge(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
+                                     const abbe_material *material,
+                                     const abbe_wavelengths *wavelengths,
+                                     const abbe_weights *weights, const abbe_gem_optimum_desc *desc,
+                                     abbe_gem_optimum *optimum, size_t i, abbe_error *error) {
   const work w = {material, wavelengths, weights, desc};
   abbe_gem_number value;
   ABBE_TRY(check_pair(optimum, i, error));
@@ -187,8 +186,8 @@ abbe_result abbe_gem_optimum_find(const abbe_cut *cut, const abbe_cut_polyhedron
   if (result != ABBE_OK) return result;
   const size_t all = out->crowns * out->pavilions, step = desc->parts > 0 ? desc->parts : 1;
   for (size_t i = desc->parts > 0 ? desc->part : 0; i < all && result == ABBE_OK; i += step) {
-    result = abbe_gem_optimum_judge(cut, polyhedron, material, wavelengths, weights, desc, out, i,
-                                    error);
+    result =
+        gem_optimum_judge(cut, polyhedron, material, wavelengths, weights, desc, out, i, error);
     if (result == ABBE_OK && desc->progress != NULL &&
         !desc->progress(desc->user, fmin((double)(i + step) / (double)all, 1)))
       result = abbe_error_set(error, ABBE_CANCELLED, "the search was given up");

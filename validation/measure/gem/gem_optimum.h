@@ -55,14 +55,6 @@ abbe_result abbe_gem_optimum_find(const abbe_cut *cut, const abbe_cut_polyhedron
 /* Safe on a zeroed one. */
 void abbe_gem_optimum_free(abbe_gem_optimum *optimum);
 
-/* Judges pair i of a search that has begun with the same. Errors as those of find, and
- * ABBE_INVALID_ARGUMENT for a pair that is not there. */
-abbe_result abbe_gem_optimum_judge(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
-                                   const abbe_material *material,
-                                   const abbe_wavelengths *wavelengths, const abbe_weights *weights,
-                                   const abbe_gem_optimum_desc *desc, abbe_gem_optimum *optimum,
-                                   size_t i, abbe_error *error);
-
 /* What value[i] is, and whether that is the best of those that are known; of pairs as good as each
  * other, the first is. */
 void abbe_gem_optimum_know(abbe_gem_optimum *optimum, size_t i, abbe_gem_number value);

@@ -62,8 +62,7 @@ static abbe_result make_room(abbe_haze_grid *g, size_t count, abbe_error *error)
 abbe_result abbe_haze_grid_fill(abbe_haze_grid *g, const abbe_haze_photon *photon, size_t count,
                                 float radius, abbe_error *error) {
   lay_out(g, photon, count, radius);
-  const abbe_result result = make_room(g, count, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(make_room(g, count, error));
   g->count = count;
   memset(g->first, 0, (g->cubes + 1) * sizeof *g->first);
   for (size_t i = 0; i < count; i++) {

@@ -177,8 +177,7 @@ static void put(hashed_stream *s, const void *data, size_t size) {
 
 abbe_result abbe_checkpoint_save(const abbe_tracer *t, const char *path, abbe_error *error) {
   abbe_file_writer writer = {0};
-  abbe_result result = abbe_file_writer_open(&writer, path, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_file_writer_open(&writer, path, error));
   char text[TEXT];
   describe(t, text, sizeof text);
   abbe_pass_counts counts;
@@ -261,16 +260,15 @@ static abbe_result read_head(const abbe_tracer *t, const char *path, abbe_pass_c
   char head[HEAD + 1];
   FILE *file;
   *c = (abbe_pass_counts){0};
-  abbe_result result = abbe_file_open(path, &file, NULL, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_file_open(path, &file, NULL, error));
   size_t numbers = 0, size = fread(head, 1, HEAD, file);
   bool failed = ferror(file) != 0;
   fclose(file);
   head[size] = '\0';
   if (failed) return ABBE_OK; /* reading it whole says why */
-  result = check_text(t, path, head, size, &numbers, error);
-  if (result == ABBE_OK && size >= numbers + sizeof *c) memcpy(c, head + numbers, sizeof *c);
-  return result;
+  ABBE_TRY(check_text(t, path, head, size, &numbers, error));
+  if (size >= numbers + sizeof *c) memcpy(c, head + numbers, sizeof *c);
+  return ABBE_OK;
 }
 
 /* Whether the sums are such as the passes can have, which a file that is forged need not hold. */
@@ -291,9 +289,8 @@ static bool sums_hold(const char *numbers, size_t size) {
 static abbe_result read_whole(const abbe_tracer *t, const char *path, char **data, size_t *numbers,
                               abbe_error *error) {
   size_t size = 0;
-  abbe_result result = abbe_file_read(path, numbers_size(t) + HEAD, data, &size, error);
-  if (result != ABBE_OK) return result;
-  result = check_text(t, path, *data, size, numbers, error);
+  ABBE_TRY(abbe_file_read(path, numbers_size(t) + HEAD, data, &size, error));
+  abbe_result result = check_text(t, path, *data, size, numbers, error);
   if (result == ABBE_OK) {
     uint64_t sum = 0;
     bool whole = size == *numbers + numbers_size(t) + sizeof sum;
@@ -337,9 +334,8 @@ abbe_result abbe_checkpoint_load(abbe_tracer *t, const char *path, abbe_error *e
   char *data = NULL;
   size_t numbers = 0;
   abbe_pass_counts c;
-  abbe_result result = read_head(t, path, &c, error);
-  if (result == ABBE_OK) result = read_whole(t, path, &data, &numbers, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_head(t, path, &c, error));
+  ABBE_TRY(read_whole(t, path, &data, &numbers, error));
   abbe_pass_sums_clear(t);
   memcpy(&c, data + numbers, sizeof c);
   add_part(t, data + numbers, &c);

@@ -47,19 +47,15 @@ static abbe_result resolve(const abbe_scene *scene, abbe_trace_desc *d, abbe_err
   if (d->map_height == 0) d->map_height = d->map_width;
   if (d->min_nm == 0) d->min_nm = ABBE_WAVELENGTH_MIN_NM;
   if (d->max_nm == 0) d->max_nm = ABBE_WAVELENGTH_MAX_NM;
-  abbe_result result = check_count("width", d->width, ABBE_TRACER_MAX_SIDE, error);
-  if (result == ABBE_OK) result = check_count("height", d->height, ABBE_TRACER_MAX_SIDE, error);
-  if (result == ABBE_OK) result = check_count("map", d->map_width, ABBE_TRACER_MAX_SIDE, error);
-  if (result == ABBE_OK) result = check_count("map", d->map_height, ABBE_TRACER_MAX_SIDE, error);
-  if (result == ABBE_OK)
-    result = check_count("photons", d->photons, ABBE_TRACER_MAX_PHOTONS, error);
-  if (result == ABBE_OK)
-    result = check_count("threads", d->threads, ABBE_TRACER_MAX_THREADS, error);
-  if (result == ABBE_OK)
-    result = check_count("whole picture", d->whole_pixels,
-                         (size_t)ABBE_TRACER_MAX_SIDE * ABBE_TRACER_MAX_SIDE, error);
-  if (result == ABBE_OK) result = check_count("pixel", d->pixel_sides, ABBE_TRACER_MAX_SIDE, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(check_count("width", d->width, ABBE_TRACER_MAX_SIDE, error));
+  ABBE_TRY(check_count("height", d->height, ABBE_TRACER_MAX_SIDE, error));
+  ABBE_TRY(check_count("map", d->map_width, ABBE_TRACER_MAX_SIDE, error));
+  ABBE_TRY(check_count("map", d->map_height, ABBE_TRACER_MAX_SIDE, error));
+  ABBE_TRY(check_count("photons", d->photons, ABBE_TRACER_MAX_PHOTONS, error));
+  ABBE_TRY(check_count("threads", d->threads, ABBE_TRACER_MAX_THREADS, error));
+  ABBE_TRY(check_count("whole picture", d->whole_pixels,
+                       (size_t)ABBE_TRACER_MAX_SIDE * ABBE_TRACER_MAX_SIDE, error));
+  ABBE_TRY(check_count("pixel", d->pixel_sides, ABBE_TRACER_MAX_SIDE, error));
   const bool empty = scene->object_count == 0;
   if (scene->environment == NULL && (scene->light_count == 0 || empty))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is nothing to trace: %s",
@@ -81,8 +77,7 @@ static abbe_result resolve(const abbe_scene *scene, abbe_trace_desc *d, abbe_err
                           "neither a picture nor a map is asked for: leave one of the two in");
   d->guides = d->guides && !d->no_picture;
   if (d->layout != NULL) {
-    result = abbe_map_layout_check(d->layout, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(abbe_map_layout_check(d->layout, error));
   }
   if (d->photons == 0) {
     d->photons = 1u << 20;
@@ -174,25 +169,26 @@ static abbe_result check_memory(const abbe_tracer *t, abbe_error *error) {
 
 static abbe_result make_sums(abbe_tracer *t, abbe_error *error) {
   const abbe_trace_desc *d = &t->desc;
-  abbe_result result = check_memory(t, error);
-  if (result == ABBE_OK && !d->no_picture) {
+  ABBE_TRY(check_memory(t, error));
+  if (!d->no_picture) {
     abbe_light_range range;
     abbe_light_range_find(&t->geometry, &range);
     t->statistics.faintest = range.least / range.greatest;
     t->picture_channels = ABBE_TRACER_BANDS + t->bands.count;
     /* sums hold values 2^28 times the usual, to 2^-65 of it */
-    result = abbe_accumulator_make(d->width * d->height * t->picture_channels, d->threads,
-                                   range.greatest * 0x1p28, &t->picture, error);
+    ABBE_TRY(abbe_accumulator_make(d->width * d->height * t->picture_channels, d->threads,
+                                   range.greatest * 0x1p28, &t->picture, error));
   }
-  if (result == ABBE_OK && d->guides)
-    result = abbe_guide_sums_make(d->width * d->height, t->picture.unit, &t->guides, error);
-  if (result == ABBE_OK && !d->no_map) {
+  if (d->guides)
+    ABBE_TRY(abbe_guide_sums_make(d->width * d->height, t->picture.unit, &t->guides, error));
+  if (!d->no_map) {
     t->map_channels = 3 + t->bands.count;
     double reach = t->projection[d->map_light].reach;
-    result = abbe_accumulator_make(d->map_width * d->map_height * t->map_channels, d->threads,
-                                   (reach > 0 ? reach : 1) * t->brightest * 0x1p14, &t->map, error);
+    ABBE_TRY(abbe_accumulator_make(d->map_width * d->map_height * t->map_channels, d->threads,
+                                   (reach > 0 ? reach : 1) * t->brightest * 0x1p14, &t->map,
+                                   error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* Pixels a side of one of the picture that photons are gathered for. */

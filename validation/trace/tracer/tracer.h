@@ -82,6 +82,7 @@ typedef struct abbe_trace_statistics {
 abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *desc,
                              abbe_tracer **out, abbe_error *error);
 void abbe_tracer_free(abbe_tracer *tracer);
+ABBE_HOLDS(abbe_tracer)
 
 /* Traces one pass: one sample a pixel, more where glass shows, and the photons of a pass. *stop
  * (may be NULL) ends it early with ABBE_CANCELLED, the pass forgotten. */

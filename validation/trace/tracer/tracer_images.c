@@ -79,17 +79,15 @@ static abbe_result attributes(const abbe_tracer *t, const char *kind, abbe_image
                            {"abbe:seed", seed},
                            {"abbe:scene", t->scene->path ? t->scene->path : "-"},
                            {"abbe:observer", abbe_observer_text(t->desc.observer)}};
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < sizeof pair / sizeof *pair && result == ABBE_OK; i++)
-    result = abbe_image_set_attribute(out, pair[i][0], pair[i][1], error);
-  if (result == ABBE_OK) result = abbe_scene_mark_exposure(t->scene, out, error);
-  if (result == ABBE_OK && t->bands.count > 0) {
-    result = abbe_image_set_attribute(out, "spectralLayoutVersion", "1.0", error);
-    if (result == ABBE_OK)
-      result = abbe_image_set_attribute(out, "emissiveUnits",
-                                        kind[0] == 'p' ? "W.m^-2.sr^-1.nm^-1" : "W.nm^-1", error);
+  for (size_t i = 0; i < sizeof pair / sizeof *pair; i++)
+    ABBE_TRY(abbe_image_set_attribute(out, pair[i][0], pair[i][1], error));
+  ABBE_TRY(abbe_scene_mark_exposure(t->scene, out, error));
+  if (t->bands.count > 0) {
+    ABBE_TRY(abbe_image_set_attribute(out, "spectralLayoutVersion", "1.0", error));
+    ABBE_TRY(abbe_image_set_attribute(out, "emissiveUnits",
+                                      kind[0] == 'p' ? "W.m^-2.sr^-1.nm^-1" : "W.nm^-1", error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result read_sums(const abbe_tracer *t, const abbe_accumulator *sums, size_t width,
@@ -163,7 +161,7 @@ abbe_result abbe_tracer_picture(const abbe_tracer *t, abbe_image *out, abbe_erro
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no picture was traced");
   static const char *const rgb[3] = {"R", "G", "B"}, *const xyz[3] = {"X", "Y", "Z"};
   const char *const *name = t->desc.space == ABBE_RGB_SPACE_XYZ ? xyz : rgb;
-  channel_list *list = calloc(1, sizeof *list);
+  ABBE_FREED channel_list *list = calloc(1, sizeof *list);
   if (list == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for channels");
   for (size_t k = 0; k < 3; k++) {
     add_channel(t, list, "", name[k], ABBE_TRACER_RGB + k, false);
@@ -173,12 +171,11 @@ abbe_result abbe_tracer_picture(const abbe_tracer *t, abbe_image *out, abbe_erro
   add_bands(t, ABBE_TRACER_BANDS, list);
   const size_t summed = list->count;
   add_guides(t, name, list);
-  abbe_result result = read_sums(t, &t->picture, t->desc.width, t->desc.height, t->picture_channels,
-                                 list, summed, "picture", out, error);
-  if (result == ABBE_OK) read_guides(t, out);
-  free(list);
-  if (result == ABBE_OK) abbe_rgb_space_chromaticities(t->desc.space, out->xy);
-  return result;
+  ABBE_TRY(read_sums(t, &t->picture, t->desc.width, t->desc.height, t->picture_channels, list,
+                     summed, "picture", out, error));
+  read_guides(t, out);
+  abbe_rgb_space_chromaticities(t->desc.space, out->xy);
+  return ABBE_OK;
 }
 
 abbe_result abbe_tracer_map(const abbe_tracer *t, abbe_image *out, abbe_error *error) {

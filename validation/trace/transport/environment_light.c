@@ -78,9 +78,8 @@ abbe_result abbe_environment_light_make(const abbe_geometry *g, const abbe_spect
   if (environment == NULL) return ABBE_OK;
   abbe_environment_light e = {.environment = environment, .light = g->scene->light_count};
   abbe_upsampling up;
-  abbe_result result = abbe_upsampling_make_by(s->observer, &environment->illuminant,
-                                               s->lambda_nm[0], s->lambda_nm[s->steps], &up, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_upsampling_make_by(s->observer, &environment->illuminant, s->lambda_nm[0],
+                                   s->lambda_nm[s->steps], &up, error));
   e.lift = calloc(s->steps, sizeof *e.lift);
   e.band = calloc(bands->count + 1, sizeof *e.band);
   e.ball = calloc(g->refractor_count + g->mirror_count + 1, sizeof *e.ball);

@@ -37,8 +37,7 @@ static abbe_result fill_crystal(const abbe_geometry *g, const double *lambda_nm,
     const size_t at = i * (m->steps + 1) + k;
     for (int axis = 0; axis < 3; axis++) {
       double n = 0;
-      abbe_result result = abbe_material_n_along(o->material, axis, lambda_nm[k], &n, error);
-      if (result != ABBE_OK) return result;
+      ABBE_TRY(abbe_material_n_along(o->material, axis, lambda_nm[k], &n, error));
       float *principal = m->principal + 3 * (i * (m->steps + 1)) + axis;
       principal[3 * k] = (float)n;
       m->dispersive[i] = m->dispersive[i] || principal[3 * k] != principal[0];
@@ -108,16 +107,14 @@ static abbe_result fill(const abbe_geometry *g, const double *lambda_nm, abbe_me
       if (is_same(g, m->stuff[i], i)) break;
     for (size_t k = 0; k <= m->steps; k++) {
       double n = 0;
-      abbe_result result = abbe_material_n(material, lambda_nm[k], &n, error);
-      if (result != ABBE_OK) return result;
+      ABBE_TRY(abbe_material_n(material, lambda_nm[k], &n, error));
       size_t at = i * (m->steps + 1) + k;
       m->n[at] = (float)n;
       m->attenuation[at] = (float)(abbe_material_attenuation(material, lambda_nm[k]) * g->unit);
       *absorbs = *absorbs || m->attenuation[at] > 0;
       m->dispersive[i] = m->dispersive[i] || m->n[at] != m->n[i * (m->steps + 1)];
     }
-    abbe_result result = fill_crystal(g, lambda_nm, m, i, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(fill_crystal(g, lambda_nm, m, i, error));
   }
   return ABBE_OK;
 }

@@ -20,8 +20,7 @@ static abbe_result fill(const abbe_geometry *g, const double *lambda_nm, abbe_mi
     fill_lobe(g, &o->brushing, &m->lobe[i]);
     for (size_t k = 0; k <= m->steps && o->conductor != NULL; k++) {
       double nk[2];
-      abbe_result result = abbe_material_nk(o->conductor, lambda_nm[k], &nk[0], &nk[1], error);
-      if (result != ABBE_OK) return result;
+      ABBE_TRY(abbe_material_nk(o->conductor, lambda_nm[k], &nk[0], &nk[1], error));
       for (int c = 0; c < 2; c++) m->nk[i * (m->steps + 1) + k][c] = (float)nk[c];
     }
   }

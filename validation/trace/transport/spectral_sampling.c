@@ -183,9 +183,8 @@ static abbe_result fill_colours(const abbe_scene *scene, abbe_spectral_sampling 
   for (size_t l = 0; l < s->lights; l++) {
     const abbe_illuminant *illuminant = illuminant_of(scene, l);
     abbe_weights weights;
-    abbe_result result =
-        abbe_weights_make_by(s->observer, &bands, illuminant, ABBE_RGB_SPACE_XYZ, &weights, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(
+        abbe_weights_make_by(s->observer, &bands, illuminant, ABBE_RGB_SPACE_XYZ, &weights, error));
     double power = 0;
     memcpy(s->white[l], weights.sum, sizeof s->white[l]);
     for (size_t k = 0; k < s->steps; k++) {

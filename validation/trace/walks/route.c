@@ -48,10 +48,9 @@ static abbe_result axes_of(const walker *w, abbe_media_set set, abbe_biaxial *ou
   memcpy(out->axis[0], object->axis_x, sizeof object->axis_x);
   memcpy(out->axis[2], object->axis, sizeof object->axis);
   abbe_vector_cross(object->axis, object->axis_x, out->axis[1]);
-  abbe_result result = ABBE_OK;
-  for (int axis = 0; axis < 3 && result == ABBE_OK; axis++)
-    result = abbe_material_n_along(object->material, axis, w->lambda_nm, &out->n[axis], error);
-  return result;
+  for (int axis = 0; axis < 3; axis++)
+    ABBE_TRY(abbe_material_n_along(object->material, axis, w->lambda_nm, &out->n[axis], error));
+  return ABBE_OK;
 }
 
 /* The way that the choice names, or else the strongest. */
@@ -129,21 +128,20 @@ static abbe_result meet(walker *w, const abbe_hit *hit, const char **choice, abb
   abbe_media_set before, after;
   abbe_media_cross(w->inside, hit->surface->index, entering, &before, &after);
   double n_i, n_t;
-  abbe_result result = index_of(w, before, &n_i, error);
-  if (result == ABBE_OK) result = index_of(w, after, &n_t, error);
+  ABBE_TRY(index_of(w, before, &n_i, error));
+  ABBE_TRY(index_of(w, after, &n_t, error));
   abbe_uniaxial media[2];
-  if (result == ABBE_OK) result = medium_of(w, before, &media[0], error);
-  if (result == ABBE_OK) result = medium_of(w, after, &media[1], error);
+  ABBE_TRY(medium_of(w, before, &media[0], error));
+  ABBE_TRY(medium_of(w, after, &media[1], error));
   abbe_biaxial axes[2];
   bool biaxial = false;
-  if (result == ABBE_OK) result = axes_of(w, before, &axes[0], &biaxial, error);
-  if (result == ABBE_OK) result = axes_of(w, after, &axes[1], &biaxial, error);
+  ABBE_TRY(axes_of(w, before, &axes[0], &biaxial, error));
+  ABBE_TRY(axes_of(w, after, &axes[1], &biaxial, error));
   const bool covered = abbe_media_of(before) == abbe_media_of(after);
   abbe_film_layer layer[ABBE_FILM_MOST_LAYERS];
   abbe_biaxial_film made;
   const abbe_biaxial_film *film = NULL;
-  if (result == ABBE_OK) result = find_film(w, hit, covered, entering, layer, &made, &film, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(find_film(w, hit, covered, entering, layer, &made, &film, error));
   out->cos_in = (double)cos_i;
   out->inside_n = n_i;
   if (biaxial || media[0].n_o != media[0].n_e || media[1].n_o != media[1].n_e) {
@@ -190,13 +188,12 @@ static abbe_result mirror(walker *w, const abbe_hit *hit, abbe_route_vertex *out
   out->event = ABBE_ROUTE_REFLECTED;
   out->cos_in = (double)cos_i;
   out->reflectance = object->mirror_reflectance;
-  abbe_result result = index_of(w, w->inside, &out->inside_n, error);
-  if (result != ABBE_OK || object->conductor == NULL) return result;
+  ABBE_TRY(index_of(w, w->inside, &out->inside_n, error));
+  if (object->conductor == NULL) return ABBE_OK;
   double nk[2];
-  result = abbe_material_nk(object->conductor, w->lambda_nm, &nk[0], &nk[1], error);
-  if (result == ABBE_OK)
-    out->reflectance = abbe_optics_fresnel_conductor((double)cos_i, nk[0], nk[1]);
-  return result;
+  ABBE_TRY(abbe_material_nk(object->conductor, w->lambda_nm, &nk[0], &nk[1], error));
+  out->reflectance = abbe_optics_fresnel_conductor((double)cos_i, nk[0], nk[1]);
+  return ABBE_OK;
 }
 
 static abbe_result step(walker *w, const char **choice, abbe_route_vertex *out, bool *ended,
@@ -249,8 +246,7 @@ abbe_result abbe_route_follow(const abbe_geometry *geometry, const double from[3
   for (int k = 0; k < 3; k++) w.d[k] = (float)direction[k];
   bool ended = false;
   while (!ended && *count < room) {
-    abbe_result result = step(&w, &choices, &vertex[*count], &ended, error);
-    if (result != ABBE_OK) return result;
+    ABBE_TRY(step(&w, &choices, &vertex[*count], &ended, error));
     ++*count;
   }
   return ABBE_OK;
