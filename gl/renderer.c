@@ -4,7 +4,7 @@
 #include "gl/renderer_state.h"
 
 #include "base/clock.h"
-#include "gl/device/state.h"
+#include "gl/device/api.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 #include "gl/renderer_state.h"
 
-#include "gl/device/state.h"
+#include "gl/device/api.h"
 
 abbe_result abbe_renderer_enter(abbe_context *context, abbe_error *error) {
   ABBE_TRY(abbe_context_make_current(context, error));

@@ -1,6 +1,6 @@
 #include "spectral/spectrum.h"
 
-#include "base/gsl_guard.h"
+#include "base/maths.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_interp.h>

@@ -1,4 +1,4 @@
-foreach(name error foreign_text
+foreach(name error
         number report text_cursor
         text yaml yaml_edit)
   abbe_test(${name} cpu abbe_base)

@@ -7,7 +7,7 @@ foreach(name bindings cut_mesh buffer_memory gpu_store light_views local_scene
 endforeach()
 abbe_test(context gl ${gl_rooms})
 abbe_test(program gl ${gl_rooms})
-abbe_test(state gl ${gl_rooms})
+abbe_test(api gl ${gl_rooms})
 abbe_test(optics_glsl gl ${gl_rooms})
 abbe_test(crystals_glsl gl ${gl_rooms})
 abbe_test(walk gl ${gl_rooms})

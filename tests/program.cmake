@@ -120,7 +120,7 @@ add_test(NAME reference_broken_wavelengths
           --broken prism --wavelengths 1)
 abbe_label(program NAMES reference_broken_exits reference_broken_wavelengths)
 
-foreach(name inspect_packet view_camera view_document view_events view_feed view_files view_guard view_inspect view_outline view_pace view_painter view_refine
+foreach(name inspect_packet view_camera view_document view_events view_feed view_files view_guard view_inspect view_outline view_pace view_show view_refine
     view_scene view_state)
   abbe_test(${name} cpu abbe_view_state abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 endforeach()

@@ -11,7 +11,7 @@ foreach(name
     environment_trace
     eye_samples
     eye_walk
-    gem_ascent gem_grid_file gem_maps gem_optimum gem_slope gem_tilts gem_view
+    gem_ascent gem_maps gem_optimum gem_slope gem_tilts gem_view
     guide_sums map_texels
     field
     surrogate
@@ -21,7 +21,7 @@ foreach(name
     haze air_light haze_grid shaft_photons haze_trace
     solid
     interface
-    light_walk lamp_rays path_splitting
+    light_walk lamp_rays
     known_answers
     known_picture
     known_light

@@ -6,8 +6,8 @@
 #include "base/report.h"
 #include "colorimetry/weights.h"
 #include "scenes/cuts/cut.h"
-#include "scenes/cuts/cut_measures.h"
 #include "scenes/cuts/cut_polyhedron.h"
+#include "scenes/cuts/cut_stretch.h"
 #include "spectral/materials/material_table.h"
 #include "validation/measure/gem/gem_stone.h"
 

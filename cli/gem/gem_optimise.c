@@ -7,7 +7,7 @@
 #include "cli/gem/gem_input.h"
 
 #include "scenes/cuts/cut_stretch.h"
-#include "validation/measure/gem/gem_grid_file.h"
+#include "validation/measure/gem/gem_maps.h"
 #include "validation/measure/gem/gem_optimum.h"
 
 #include <argp.h>

@@ -6,7 +6,6 @@
 #include "cli/render/render_request.h"
 #include "colorimetry/image/exr.h"
 #include "gl/band_picture.h"
-#include "validation/trace/bounded_trace.h"
 #include "validation/trace/checked_picture.h"
 
 #include <cjson/cJSON.h>

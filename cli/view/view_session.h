@@ -6,7 +6,6 @@
 #define ABBE_CLI_VIEW_VIEW_SESSION_H
 
 #include "cli/view/inspect/inspect.h"
-#include "cli/view/picture/view_painter.h"
 #include "cli/view/picture/view_show.h"
 #include "cli/view/widgets/view_ui.h"
 #include "cli/view/work/view_scene.h"
@@ -23,8 +22,8 @@
 typedef struct abbe_view_desk {
   abbe_view_worker *worker;
   uint64_t serial; /* number of what it does, */
-  bool other; /* which is no job of cli/view/state/view_refine.h: a look, a turntable's frame */
-  bool asked; /* about this pixel: */
+  bool other;      /* which is no job of cli/view/state/view_state.h: a look, a turntable's frame */
+  bool asked;      /* about this pixel: */
   size_t pixel[2];
   abbe_camera camera; /* as it was led to then */
   double stopped_s;   /* when it was cancelled; below 0: it was not */

@@ -1,4 +1,4 @@
-#include "gl/scene/ray_trees.h"
+#include "gl/scene/gpu_scene.h"
 
 #include "base/maths.h"
 #include "gl/device/shader_maths.h"

@@ -4,7 +4,6 @@
 #include "base/maths.h"
 #include "base/number.h"
 #include "colorimetry/plot/chart_panel.h"
-#include "scenes/cuts/cut_measures.h"
 #include "scenes/cuts/cut_stretch.h"
 
 #include <cairo-pdf.h>

@@ -3,7 +3,7 @@
 
 #include "base/number.h"
 #include "scenes/cuts/cut_file.h"
-#include "scenes/cuts/cut_measures.h"
+#include "scenes/cuts/cut_stretch.h"
 #include "scenes/import/mesh/gltf_material.h"
 #include "scenes/mesh/mesh.h"
 #include "spectral/formats/material_import.h"

@@ -1,6 +1,6 @@
 #include "spectral/dispersion/fit.h"
 
-#include "base/gsl_guard.h"
+#include "base/maths.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit.h>

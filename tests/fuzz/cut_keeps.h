@@ -6,7 +6,7 @@
 #include "tests/fuzz/fuzz.h"
 
 #include "scenes/cuts/cut_file.h"
-#include "scenes/cuts/cut_measures.h"
+#include "scenes/cuts/cut_stretch.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
  * of a renderer, and in no other. */
 #include "tests/scenes/scene_text.h"
 
-#include "gl/renderer_inputs.h"
+#include "gl/renderer_state.h"
 
 enum {
   GEOMETRY = 1 << ABBE_PART_GEOMETRY,

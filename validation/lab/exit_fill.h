@@ -10,7 +10,6 @@
 #include "scenes/volume/caustic_volume.h"
 #include "scenes/volume/light_exits.h"
 #include "scenes/volume/volume_body.h"
-#include "scenes/volume/volume_region.h"
 #include "validation/trace/transport/geometry.h"
 #include "validation/trace/transport/media.h"
 #include "validation/trace/transport/mirrors.h"

@@ -10,7 +10,7 @@
 #define ABBE_VALIDATION_LAB_VOLUME_SUMS_H
 
 #include "base/error.h"
-#include "scenes/volume/volume_region.h"
+#include "scenes/volume/caustic_volume.h"
 #include "validation/trace/tracer/accumulator.h"
 
 #include <stdbool.h>

@@ -1,4 +1,4 @@
-#include "cli/view/picture/view_painter.h"
+#include "cli/view/picture/view_show.h"
 
 #include "colorimetry/chromaticity.h"
 #include "colorimetry/rgb_space.h"

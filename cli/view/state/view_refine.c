@@ -1,4 +1,4 @@
-#include "cli/view/state/view_refine.h"
+#include "cli/view/state/view_state.h"
 
 #include <math.h>
 #include <string.h>

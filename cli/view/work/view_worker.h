@@ -3,14 +3,13 @@
  * It has a context, a renderer and a tracer of its own, and loads the scene by itself, so that
  * whoever watches never waits, nor another worker. One job at a time; what it makes is handed over
  * whole. It decides nothing: which job is next, and whether one is to stop, is
- * cli/view/state/view_refine.h's business. Internal to cli/.
+ * cli/view/state/view_state.h's business. Internal to cli/.
  */
 #ifndef ABBE_CLI_VIEW_WORK_VIEW_WORKER_H
 #define ABBE_CLI_VIEW_WORK_VIEW_WORKER_H
 
 #include "cli/view/picture/view_feed.h"
 #include "cli/view/state/view_document.h"
-#include "cli/view/state/view_refine.h"
 #include "cli/view/state/view_state.h"
 #include "cli/view/work/view_scene.h"
 #include "colorimetry/image/image.h"

@@ -1,7 +1,6 @@
 #include "gl/methods/volume/volume_light.h"
 
 #include "base/maths.h"
-#include "scenes/volume/exits/exit_light.h"
 #include "scenes/volume/exits/exit_pages.h"
 #include "scenes/volume/half.h"
 

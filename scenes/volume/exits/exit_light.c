@@ -1,4 +1,4 @@
-#include "scenes/volume/exits/exit_light.h"
+#include "scenes/volume/exits/exit_pages.h"
 
 #include "base/maths.h"
 #include "colorimetry/weights.h"

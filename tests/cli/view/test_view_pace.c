@@ -2,7 +2,7 @@
  * what is fixed, for the light of the finest step and for the eye's samples of the finest. */
 #include "tests/check.h"
 
-#include "cli/view/state/view_refine.h"
+#include "cli/view/state/view_state.h"
 
 typedef struct machine {
   double fixed, light, eye;

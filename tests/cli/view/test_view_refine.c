@@ -1,7 +1,7 @@
 /* What is drawn next, by scripted events: no scene, no graphics. */
 #include "tests/check.h"
 
-#include "cli/view/state/view_refine.h"
+#include "cli/view/state/view_state.h"
 
 enum { SHOWS = 2, BESIDE }; /* of two workers, whichever it is */
 

@@ -4,7 +4,7 @@
 #include "tests/gl/glsl.h"
 
 #include "base/maths.h"
-#include "gl/device/state.h"
+#include "gl/device/api.h"
 #include "gl/scene/gpu_scene.h"
 
 enum { LOOKS = 4096 };

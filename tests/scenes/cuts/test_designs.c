@@ -1,8 +1,8 @@
 /* The designs that ship: each is closed, with the corners, edges and faces that it was drawn with,
  * no facet that cuts nothing, and the symmetry that it says. */
 #include "scenes/cuts/cut_file.h"
-#include "scenes/cuts/cut_measures.h"
 #include "scenes/cuts/cut_polyhedron.h"
+#include "scenes/cuts/cut_stretch.h"
 
 #include "tests/check.h"
 

@@ -4,7 +4,6 @@
 
 #include "base/maths.h"
 #include "colorimetry/weights.h"
-#include "scenes/volume/exits/exit_light.h"
 #include "scenes/volume/exits/exit_pages.h"
 #include "scenes/volume/half.h"
 #include "tests/scenes/scene_text.h"

@@ -5,7 +5,7 @@
 
 #include "base/maths.h"
 #include "colorimetry/weights.h"
-#include "scenes/volume/exits/exit_light.h"
+#include "scenes/volume/exits/exit_pages.h"
 #include "scenes/volume/half.h"
 #include "spectral/optics.h"
 #include "tests/validation/lab/filled_volume.h"

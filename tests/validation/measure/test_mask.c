@@ -1,4 +1,4 @@
-#include "validation/measure/mask.h"
+#include "validation/measure/compare.h"
 
 #include "tests/check.h"
 

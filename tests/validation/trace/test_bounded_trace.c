@@ -3,7 +3,7 @@
  */
 #include "tests/validation/trace_scene.h"
 
-#include "validation/trace/bounded_trace.h"
+#include "validation/trace/checked_picture.h"
 #include "validation/trace/denoise.h"
 
 #define SCENE CAMERA POINT_LIGHT FLOOR BEADS("crown")

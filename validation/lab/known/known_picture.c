@@ -6,7 +6,6 @@
 #include "spectral/dispersion/dispersion.h"
 #include "validation/lab/known/known_answers.h"
 #include "validation/lab/known/known_light.h"
-#include "validation/lab/known/sphere_quadrature.h"
 
 #include <math.h>
 #include <stdio.h>

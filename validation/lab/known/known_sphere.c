@@ -2,7 +2,6 @@
  * quadrature. */
 #include "base/maths.h"
 #include "validation/lab/known/known_light.h"
-#include "validation/lab/known/sphere_quadrature.h"
 
 #include "base/number.h"
 #include "spectral/dispersion/dispersion.h"

@@ -1,6 +1,5 @@
-#include "validation/lab/known/sphere_quadrature.h"
+#include "validation/lab/known/known_light.h"
 
-#include "base/gsl_guard.h"
 #include "base/maths.h"
 #include "colorimetry/weights.h"
 #include "spectral/optics.h"

@@ -218,3 +218,99 @@ void abbe_gem_light_judge(const abbe_gem_light *light, const abbe_gem_path *path
   amount[ABBE_GEM_ABSORBED] = path->absorbed;
   amount[ABBE_GEM_LEFT] = path->left;
 }
+
+static double scatter(double square, size_t count) {
+  return count < 2 ? NAN : sqrt(square * ((double)count - 1) / (double)count);
+}
+
+abbe_gem_number abbe_gem_number_jackknife(double whole, const double *without, size_t count) {
+  double mean = 0, square = 0;
+  for (size_t i = 0; i < count; i++) mean += without[i] / (double)count;
+  for (size_t i = 0; i < count; i++) square += (without[i] - mean) * (without[i] - mean);
+  return (abbe_gem_number){whole, scatter(square, count)};
+}
+
+static double ratio(double sum, double weight) {
+  return weight > 0 ? sum / weight : 0;
+}
+
+abbe_gem_number abbe_gem_number_ratio(const double *sum, const double *weight, size_t count) {
+  double s = 0, w = 0, mean = 0, square = 0;
+  for (size_t i = 0; i < count; i++) {
+    s += sum[i];
+    w += weight[i];
+  }
+  for (size_t i = 0; i < count; i++) mean += ratio(s - sum[i], w - weight[i]) / (double)count;
+  for (size_t i = 0; i < count; i++) square += pow(ratio(s - sum[i], w - weight[i]) - mean, 2);
+  return (abbe_gem_number){ratio(s, w), scatter(square, count)};
+}
+
+void abbe_gem_sums_add(abbe_gem_sums *s, const double *value, const float *weight, size_t count) {
+  const double n = (double)count, unbiased = n / (n - 1);
+  double v = 0, w = 0;
+  for (size_t r = 0; r < count; r++) {
+    v += value[r];
+    w += (double)weight[r];
+  }
+  s->value += v;
+  s->weight += w;
+  for (size_t r = 0; r < count; r++) {
+    const double dv = value[r] - v / n, dw = (double)weight[r] - w / n;
+    s->value_square += unbiased * dv * dv;
+    s->product += unbiased * dv * dw;
+    s->weight_square += unbiased * dw * dw;
+  }
+}
+
+void abbe_gem_sums_join(abbe_gem_sums *to, const abbe_gem_sums *other) {
+  to->value += other->value;
+  to->weight += other->weight;
+  to->value_square += other->value_square;
+  to->product += other->product;
+  to->weight_square += other->weight_square;
+}
+
+abbe_gem_number abbe_gem_sums_ratio(const abbe_gem_sums *s) {
+  const double is = ratio(s->value, s->weight);
+  const double square = s->value_square - 2 * is * s->product + is * is * s->weight_square;
+  return (abbe_gem_number){is, ratio(sqrt(fmax(square, 0)), s->weight)};
+}
+
+/* A vector of the stone's, seen from the eye's frame before the stone turned: turned back. */
+static void turn(const double axis[2], double c, double s, const double in[3], double out[3]) {
+  const double along = axis[0] * in[0] + axis[1] * in[1];
+  const double cross[3] = {axis[1] * in[2], -axis[0] * in[2], axis[0] * in[1] - axis[1] * in[0]};
+  for (int k = 0; k < 3; k++)
+    out[k] = c * in[k] + s * cross[k] + (1 - c) * along * (k < 2 ? axis[k] : 0);
+}
+
+abbe_gem_eye abbe_gem_eye_make(double axis_rad, double tilt_rad) {
+  static const double base[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const double axis[2] = {cos(axis_rad), sin(axis_rad)};
+  abbe_gem_eye eye;
+  double *to[3] = {eye.right, eye.up, eye.to_eye};
+  /* the stone turns one way, and the eye in its axes the other */
+  for (int k = 0; k < 3; k++) turn(axis, cos(tilt_rad), -sin(tilt_rad), base[k], to[k]);
+  return eye;
+}
+
+void abbe_gem_eye_ray(const abbe_gem_eye *eye, size_t side, size_t column, size_t row, double u,
+                      double v, double o[3], double d[3]) {
+  const double x = 2 * ((double)column + u) / (double)side - 1;
+  const double y = 1 - 2 * ((double)row + v) / (double)side;
+  for (int k = 0; k < 3; k++) {
+    o[k] = x * eye->right[k] + y * eye->up[k] + 2 * eye->to_eye[k];
+    d[k] = -eye->to_eye[k];
+  }
+}
+
+uint32_t abbe_gem_eye_place(size_t side, size_t column, size_t row, size_t repeat, double *u,
+                            double *v) {
+  uint32_t bits[4];
+  abbe_random_bits((uint32_t)column, (uint32_t)row, (uint32_t)side, (uint32_t)repeat, bits);
+  *u = (double)abbe_random_float(bits[0]);
+  *v = (double)abbe_random_float(bits[1]);
+  /* of a pixel's repeats, so that its first choices are spread evenly [Roberts2018] */
+  abbe_random_bits((uint32_t)column, (uint32_t)row, (uint32_t)side, 0, bits);
+  return bits[2] + (uint32_t)repeat * 2654435769u;
+}

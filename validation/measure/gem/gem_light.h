@@ -9,11 +9,63 @@
 #ifndef ABBE_VALIDATION_MEASURE_GEM_GEM_LIGHT_H
 #define ABBE_VALIDATION_MEASURE_GEM_GEM_LIGHT_H
 
-#include "validation/measure/gem/gem_eye.h"
 #include "validation/measure/gem/gem_stone.h"
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
+
+/* A measured number and its standard error, from independent rays or repeats. */
+
+typedef struct abbe_gem_number {
+  double value, error; /* error: one standard deviation; NaN for fewer than two repeats */
+} abbe_gem_number;
+
+/* What rays by chance in a grid's pixels add up to. Errors come from the scatter in each pixel, for
+ * few repeats tell the scatter of their totals poorly. Zeroed before the first pixel. */
+typedef struct abbe_gem_sums {
+  double value, weight;                        /* totals */
+  double value_square, product, weight_square; /* their variances and covariance */
+} abbe_gem_sums;
+
+/* One pixel's rays, count >= 2. */
+void abbe_gem_sums_add(abbe_gem_sums *sums, const double *value, const float *weight, size_t count);
+void abbe_gem_sums_join(abbe_gem_sums *to, const abbe_gem_sums *other);
+/* Value over weight; 0 where no weight is above 0. */
+abbe_gem_number abbe_gem_sums_ratio(const abbe_gem_sums *sums);
+
+/* The ratio of the totals of sum[i] and weight[i], i < count, and its error by the scatter of what
+ * is left without each repeat in turn (the jackknife [Efron1982]). 0 where no weight is above 0. */
+abbe_gem_number abbe_gem_number_ratio(const double *sum, const double *weight, size_t count);
+
+/* whole: from all repeats; without[i]: the same measure without repeat i. */
+abbe_gem_number abbe_gem_number_jackknife(double whole, const double *without, size_t count);
+
+/* An eye far away that looks at a stone: parallel rays through a square of pixels.
+ *
+ * The stone lies level or is tilted about a horizontal axis of its own; the square is the same at
+ * all tilts, the least that holds the ball around the stone's corners. Internal to
+ * validation/measure/gem/. */
+
+/* Unit vectors in the stone's axes. */
+typedef struct abbe_gem_eye {
+  double right[3], up[3]; /* directions of the picture; x and y where the stone lies level */
+  double to_eye[3];       /* z there */
+} abbe_gem_eye;
+
+/* axis_rad: azimuth of the axis, from x to y; tilt_rad: above 0, the stone turns by it as a right
+ * hand's fingers about the axis: what is to the left of the axis' arrow comes towards the eye. */
+abbe_gem_eye abbe_gem_eye_make(double axis_rad, double tilt_rad);
+
+/* The ray of pixel (column, row) of side x side, row 0 at the top, at (u, v) in it, each 0 to 1,
+ * from the left and top: a place outside the stone, and the direction away from the eye. */
+void abbe_gem_eye_ray(const abbe_gem_eye *eye, size_t side, size_t column, size_t row, double u,
+                      double v, double o[3], double d[3]);
+
+/* A place in a pixel, by chance: each repeat is a jittered grid by itself, and independent of the
+ * others, so that their scatter shows their error. Returns a seed for what else the ray decides. */
+uint32_t abbe_gem_eye_place(size_t side, size_t column, size_t row, size_t repeat, double *u,
+                            double *v);
 
 /* All that becomes of the light along one ray of the eye in a cut stone.
  *

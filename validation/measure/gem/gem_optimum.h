@@ -7,7 +7,7 @@
 #ifndef ABBE_VALIDATION_MEASURE_GEM_GEM_OPTIMUM_H
 #define ABBE_VALIDATION_MEASURE_GEM_GEM_OPTIMUM_H
 
-#include "validation/measure/gem/gem_tilts.h"
+#include "validation/measure/gem/gem_judgement.h"
 #include "validation/measure/gem/gem_view.h"
 
 enum { ABBE_GEM_MOST_ANGLES = 201 };

@@ -1,4 +1,4 @@
-#include "validation/measure/gem/gem_tilts.h"
+#include "validation/measure/gem/gem_judgement.h"
 
 #include "base/maths.h"
 #include "colorimetry/difference.h"

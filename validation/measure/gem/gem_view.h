@@ -9,9 +9,7 @@
 #define ABBE_VALIDATION_MEASURE_GEM_GEM_VIEW_H
 
 #include "colorimetry/weights.h"
-#include "validation/measure/gem/gem_eye.h"
 #include "validation/measure/gem/gem_light.h"
-#include "validation/measure/gem/gem_number.h"
 
 enum { ABBE_GEM_MOST_SIDE = 2048, ABBE_GEM_MOST_REPEATS = 64 };
 

@@ -2,7 +2,7 @@
 
 #include "base/file.h"
 #include "base/number.h"
-#include "validation/trace/tracer/pass_sums.h"
+#include "validation/trace/tracer/tracer_state.h"
 
 #include <stdio.h>
 #include <stdlib.h>

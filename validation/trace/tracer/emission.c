@@ -1,4 +1,4 @@
-#include "validation/trace/tracer/emission.h"
+#include "validation/trace/tracer/tracer_state.h"
 
 #include "base/maths.h"
 #include "validation/trace/transport/random.h"

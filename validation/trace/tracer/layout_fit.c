@@ -1,7 +1,6 @@
 #include "validation/trace/tracer/tracer_state.h"
 
 #include "base/maths.h"
-#include "validation/trace/tracer/emission.h"
 
 #include <stdlib.h>
 #include <string.h>

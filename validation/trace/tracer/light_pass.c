@@ -1,10 +1,9 @@
 #include "validation/trace/tracer/light_pass.h"
 
 #include "base/maths.h"
-#include "validation/trace/tracer/emission.h"
-#include "validation/trace/tracer/shaft_photons.h"
+#include "validation/trace/tracer/tracer_state.h"
 #include "validation/trace/transport/random.h"
-#include "validation/trace/walks/path_splitting.h"
+#include "validation/trace/walks/light_walk.h"
 
 #include <omp.h>
 #include <stdbool.h>

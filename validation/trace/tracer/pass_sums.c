@@ -1,4 +1,4 @@
-#include "validation/trace/tracer/pass_sums.h"
+#include "validation/trace/tracer/tracer_state.h"
 
 #include "validation/trace/tracer/light_pass.h"
 

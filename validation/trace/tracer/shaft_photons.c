@@ -1,4 +1,4 @@
-#include "validation/trace/tracer/shaft_photons.h"
+#include "validation/trace/tracer/tracer_state.h"
 
 #include "validation/trace/medium/glow.h"
 #include "validation/trace/transport/random.h"

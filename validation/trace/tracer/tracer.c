@@ -2,7 +2,6 @@
 
 #include "base/clock.h"
 #include "spectral/wavelengths.h"
-#include "validation/trace/tracer/emission.h"
 #include "validation/trace/tracer/light_pass.h"
 #include "validation/trace/tracer/tracer_state.h"
 #include "validation/trace/transport/lamp_place.h"

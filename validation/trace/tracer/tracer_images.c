@@ -1,5 +1,5 @@
 /* What a tracer has so far: the picture, the receiver map, and how far off they are. */
-#include "validation/measure/mask.h"
+#include "validation/measure/compare.h"
 #include "validation/trace/tracer/tracer_state.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* abbe_tracer_rates: what the photon walk costs beside Embree's own work. */
 #include "base/clock.h"
-#include "validation/trace/tracer/emission.h"
 #include "validation/trace/tracer/light_pass.h"
+#include "validation/trace/tracer/tracer_state.h"
 
 #include <time.h>
 

@@ -6,10 +6,68 @@
 #define ABBE_VALIDATION_TRACE_TRACER_TRACER_STATE_H
 
 #include "validation/trace/medium/glow.h"
+#include "validation/trace/medium/haze_grid.h"
 #include "validation/trace/tracer/accumulator.h"
 #include "validation/trace/tracer/tracer.h"
+#include "validation/trace/transport/media.h"
+#include "validation/trace/walks/camera.h"
 #include "validation/trace/walks/eye_walk.h"
+#include "validation/trace/walks/photon.h"
 #include "validation/trace/walks/projection_map.h"
+
+#include <stdbool.h>
+
+/* Photons in participating media: each segment of a path is scattered at one
+ * place of it, which the camera may see.
+ *
+ * A place that the camera sees straight, in the medium that the camera is in, adds to its pixel at
+ * once, unbiased; nearer than a distance it does not, where few would add much. All are kept for
+ * gathers along paths of the camera. The path goes on with what is left of it, whatever happened
+ * here. In a refractor whose haze scatters more than once paths of the camera are turned too, and
+ * find all light but that of lights without size at its first turn, where its first interface was
+ * not a rough face.
+ *
+ * What a refractor absorbs to glow near its faces is kept once more behind each of them, as mirrors
+ * show it: a gather that a face cuts finds as much as one inside. Glow that is even is so up to
+ * flat faces and right-angled edges. */
+
+enum { ABBE_SHAFT_LANES = 16 };
+
+/* On its way to the camera. */
+typedef struct abbe_shaft_splat {
+  size_t pixel;
+  uint32_t step;
+  bool glows;  /* it is of the glow of something */
+  float value; /* radiance that the pixel's mean gains */
+} abbe_shaft_splat;
+
+/* Photons of one light and one thread. What is above `add` is given; the rest starts zeroed. */
+typedef struct abbe_shaft_photons {
+  const abbe_geometry *geometry;
+  const abbe_media *media;
+  const abbe_trace_camera *camera;
+  int eye_medium; /* refractor that the camera is in, or -1 */
+  float near;     /* frame: no nearer to the camera are places splatted */
+  float radius;   /* frame: of the pass's gathers */
+  uint32_t pass, seed;
+  uint32_t colour, glow; /* colour of the light's first step, and of its glow's */
+  bool found;            /* paths of the camera meet the light by themselves: it has a size */
+  void (*add)(void *user, const abbe_shaft_splat *splat);
+  void *user;
+  struct RTCRay16 packet; /* to the camera, of splats that wait */
+  abbe_shaft_splat splat[ABBE_SHAFT_LANES];
+  size_t waiting;
+  uint64_t rays;
+  size_t count, room;
+  abbe_haze_photon *photon; /* [count] owned */
+  bool full;                /* there was no memory for another */
+} abbe_shaft_photons;
+
+/* A watcher of light walks (abbe_light_walk_watch); user: an abbe_shaft_photons. */
+void abbe_shaft_photons_take(void *user, const abbe_light_stretch *stretch);
+/* Splats that wait are traced and added. */
+void abbe_shaft_photons_flush(abbe_shaft_photons *photons);
+void abbe_shaft_photons_free(abbe_shaft_photons *photons);
 
 /* What a filter of the picture reads, summed over passes: the photons' part and the camera's apart,
  * how their noise goes together in colour, and what shows where.
@@ -152,5 +210,60 @@ static inline size_t abbe_tracer_most_hits(const abbe_tracer *t, size_t light, s
 
 /* Fits a view from the map's light around where its light falls, into t->layout. */
 abbe_result abbe_tracer_fit_layout(abbe_tracer *t, abbe_error *error);
+
+/* The photons that a light sends to the refractors in one pass: how many each cell of
+ * its projection map gets, and where, whereto and at which wavelength each of them starts. */
+
+/* Cell after cell: cell i has the photons from first[i] on. */
+typedef struct abbe_emission {
+  const abbe_tracer *t;
+  size_t light, count;
+  uint32_t *first; /* [cells + 1] */
+  uint32_t pass, seed;
+} abbe_emission;
+
+/* `count` photons of the light, shared out over the cells; none where it reaches no refractor. */
+abbe_result abbe_emission_make(const abbe_tracer *t, size_t light, size_t count, uint32_t pass,
+                               uint32_t seed, abbe_emission *e, abbe_error *error);
+void abbe_emission_free(abbe_emission *e);
+
+/* Photons [from, to), at most ABBE_LIGHT_WALK_BATCH of them; how many those are. */
+size_t abbe_emission_batch(const abbe_emission *e, uint32_t from, uint32_t to, abbe_photon *photon);
+
+/* Finds out whether paths are polarised; then lights and the picture are dimmed by polarisers, each
+ * of which passes half. ABBE_INVALID_ARGUMENT with matched physics. */
+abbe_result abbe_tracer_polarise(abbe_tracer *t, abbe_error *error);
+
+/* Which passes a tracer holds, and what it has summed over them, as whole numbers
+ * alone: so they can be written to a file, and added to those of other passes. */
+
+typedef struct abbe_pass_counts {
+  uint64_t first, end, step; /* passes first, first + step, ... below end */
+  uint64_t whole;            /* passes that there are to be, of all parts; 0: not stated */
+  uint64_t photons, light_rays, eye_rays, cuts;
+} abbe_pass_counts;
+
+/* Ledger; sums and squares of the picture; guides; sums and squares of the map. */
+enum { ABBE_PASS_SUMS_PARTS = 6 };
+typedef struct abbe_sum_span {
+  abbe_whole_sum *sum;
+  size_t count; /* may be 0 */
+} abbe_sum_span;
+
+void abbe_pass_sums_spans(abbe_tracer *tracer, abbe_sum_span out[ABBE_PASS_SUMS_PARTS]);
+
+void abbe_pass_counts_get(const abbe_tracer *tracer, abbe_pass_counts *out);
+void abbe_pass_counts_set(abbe_tracer *tracer, const abbe_pass_counts *counts);
+
+/* Whether there are such passes: from 0 on, ascending, no more than there can be. */
+bool abbe_pass_counts_hold(const abbe_pass_counts *counts);
+size_t abbe_pass_counts_passes(const abbe_pass_counts *counts);
+
+/* Whether so many passes can have summed that much; then sums of all passes there can be do not
+ * overflow. */
+bool abbe_pass_sums_hold(abbe_whole_sum sum, size_t passes);
+
+/* No passes, and sums of 0. */
+void abbe_pass_sums_clear(abbe_tracer *tracer);
 
 #endif

@@ -6,6 +6,7 @@
 #include "validation/trace/walks/scatter.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -405,4 +406,24 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
   }
   abbe_lamp_rays_trace(&w->lamp_rays, w->g, ledger, &w->record);
   return r.hits;
+}
+
+unsigned abbe_path_splitting_best(const abbe_photon_hit *hit, size_t count) {
+  unsigned best = 0;
+  double least = INFINITY;
+  for (unsigned splits = 0; splits < 1u << ABBE_PHOTON_SPLITS; splits++) {
+    double squares = 0, rays = 1;
+    for (int k = 0; k < ABBE_PHOTON_SPLITS; k++) rays *= splits >> k & 1 ? 2 : 1;
+    for (size_t i = 0; i < count; i++) {
+      double weight = 1;
+      for (int k = 0; k < ABBE_PHOTON_SPLITS; k++)
+        weight *= splits >> k & 1 ? (double)hit[i].chance[k] : 1;
+      squares += weight * (double)hit[i].flux * (double)hit[i].flux;
+    }
+    if (squares * rays < least) {
+      least = squares * rays;
+      best = splits;
+    }
+  }
+  return best;
 }

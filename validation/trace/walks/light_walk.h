@@ -71,4 +71,10 @@ uint64_t abbe_light_walk_lamp_rays(const abbe_light_walk *walk);
 void abbe_light_walk_keep(abbe_light_walk *walk, size_t packets);
 bool abbe_light_walk_replay(abbe_light_walk *walk, double *seconds, uint64_t *rays);
 
+/* At which of their first interfaces the paths of photons should be split. */
+
+/* The interfaces to split at (bit 0: the first), by the hits of a trial without: those that make
+ * the least of the mean square of a hit's light, times the number of rays. */
+unsigned abbe_path_splitting_best(const abbe_photon_hit *hit, size_t count);
+
 #endif

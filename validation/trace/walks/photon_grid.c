@@ -1,4 +1,4 @@
-#include "validation/trace/walks/photon_grid.h"
+#include "validation/trace/walks/eye_walk.h"
 
 #include <math.h>
 #include <stdlib.h>

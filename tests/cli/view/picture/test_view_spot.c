@@ -4,7 +4,7 @@
 
 #include "base/maths.h"
 #include "cli/view/picture/view_feed.h"
-#include "cli/view/picture/view_painter.h"
+#include "cli/view/picture/view_show.h"
 #include "cli/view/state/view_camera.h"
 
 /* A lamp near to the floor, so that each pixel has its own light. */

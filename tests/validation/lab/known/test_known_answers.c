@@ -2,7 +2,6 @@
 #include "tests/check.h"
 
 #include "validation/lab/known/known_answers.h"
-#include "validation/lab/known/known_group.h"
 
 static abbe_known_answers make(const char *only) {
   abbe_known_answers answers;

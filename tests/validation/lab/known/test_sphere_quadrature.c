@@ -4,7 +4,7 @@
 #include "base/maths.h"
 #include "spectral/formats/material_import.h"
 #include "spectral/optics.h"
-#include "validation/lab/known/sphere_quadrature.h"
+#include "validation/lab/known/known_light.h"
 
 HOLDS(abbe_sphere_quadrature);
 

@@ -1,4 +1,4 @@
-#include "validation/measure/gem/gem_tilts.h"
+#include "validation/measure/gem/gem_judgement.h"
 
 #include "tests/validation/measure/gem/gem_stones.h"
 #include "validation/measure/gem/gem_light.h"

@@ -1,7 +1,7 @@
 /* Photons in haze: what a beam scatters in all, and what of it one pixel sees. */
 #include "tests/scenes/scene_text.h"
 
-#include "validation/trace/tracer/shaft_photons.h"
+#include "validation/trace/tracer/tracer_state.h"
 
 enum { STEPS = 2, PHOTONS = 20000 };
 

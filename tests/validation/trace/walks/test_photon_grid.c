@@ -1,7 +1,7 @@
 #include "tests/check.h"
 
 #include "tests/random.h"
-#include "validation/trace/walks/photon_grid.h"
+#include "validation/trace/walks/eye_walk.h"
 
 enum { PHOTONS = 3000 };
 

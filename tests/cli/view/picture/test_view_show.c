@@ -3,7 +3,7 @@
 #include "tests/check.h"
 
 #include "base/clock.h"
-#include "cli/view/picture/view_painter.h"
+#include "cli/view/picture/view_show.h"
 
 #include <time.h>
 

@@ -1,4 +1,4 @@
-#include "base/gsl_guard.h"
+#include "base/maths.h"
 
 #include <gsl/gsl_errno.h>
 #include <pthread.h>

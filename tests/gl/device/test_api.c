@@ -1,8 +1,9 @@
 /* The state of OpenGL around the renderer: whatever a caller leaves, pictures are the same, and
  * what a caller finds afterwards is what gl/renderer.h says. */
-#include "tests/gl/frame.h"
+#include "tests/check.h"
 
-#include "gl/device/state.h"
+#include "gl/device/api.h"
+#include "tests/gl/frame.h"
 
 #include <EGL/egl.h>
 
