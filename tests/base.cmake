@@ -1,5 +1,5 @@
 foreach(name error
-        number report text_cursor
+        number report
         text yaml yaml_edit)
   abbe_test(${name} cpu abbe_base)
 endforeach()

@@ -2,7 +2,7 @@ set(gl_rooms abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 foreach(name bindings cut_mesh buffer_memory gpu_store light_views local_scene
     band_colours camera_bands plan plan_facts precision reach receiver_charts refractor_model render_desc
     renderer_inputs haze_model
-    shader_variant spectral_needs spectral_tables statistics support)
+    shader_variant spectral_needs spectral_tables support)
   abbe_test(${name} cpu ${gl_rooms})
 endforeach()
 abbe_test(context gl ${gl_rooms})
@@ -11,7 +11,6 @@ abbe_test(api gl ${gl_rooms})
 abbe_test(optics_glsl gl ${gl_rooms})
 abbe_test(crystals_glsl gl ${gl_rooms})
 abbe_test(walk gl ${gl_rooms})
-abbe_test(beam_list gl ${gl_rooms})
 abbe_test(haze_beyond gl ${gl_rooms})
 abbe_test(haze_pass gl ${gl_rooms})
 abbe_test(shaft_grid gl ${gl_rooms})

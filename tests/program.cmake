@@ -48,9 +48,8 @@ foreach(name
     relight_command
     render_command
     trace_command
-    tilt time_frames turntable
-    validate_command
-    )
+    time_frames turntable
+    validate_command)
   abbe_test(${name} program abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)
   target_compile_definitions(test_${name} PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>")
   add_dependencies(test_${name} abbe)

@@ -7,7 +7,6 @@ foreach(name
     closed_form
     compare compare_noise
     denoise
-    difference_picture
     environment_trace
     eye_samples
     eye_walk
@@ -20,20 +19,18 @@ foreach(name
     geometry
     haze air_light haze_grid shaft_photons haze_trace
     solid
-    interface
-    light_walk lamp_rays
+    light_walk
     known_answers
     known_picture
     known_light
     mask
     media
-    mirrors mirror_walk rough_mirrors coated_walk turned_paths crystal_walk double_refraction
+    mirror_walk rough_mirrors coated_walk turned_paths crystal_walk double_refraction
     rings
     nl_means
     bounded_trace
     checked_picture
     pass_error
-    time_left
     photon_grid
     projection_map
     random
@@ -42,7 +39,6 @@ foreach(name
     scatter
     inner_walk
     spectral_sampling
-    relit_trace
     sphere_quadrature
     trace_run
     tracer

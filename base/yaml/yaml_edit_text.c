@@ -122,25 +122,24 @@ static abbe_result not_a_value(const char *value, const char *what, abbe_error *
 abbe_result abbe_yaml_edit_splice_value(abbe_yaml_edit *e, abbe_yaml_bytes where, const char *with,
                                         size_t skip, const char *value, const char *what,
                                         abbe_error *error) {
-  abbe_yaml_edit before;
+  ABBE_OWNED(abbe_yaml_edit, before) = {0};
   ABBE_TRY(abbe_yaml_edit_make(e->text, e->size, e->name, &before, error));
-  abbe_result result = abbe_yaml_edit_splice(e, where, with, error);
+  ABBE_TRY(abbe_yaml_edit_splice(e, where, with, error));
   bool found = false;
   size_t from = where.from + skip, to = from + strlen(value);
-  for (int id = 1; result == ABBE_OK && !found; id++) {
+  for (int id = 1; !found; id++) {
     abbe_yaml_node node = {id};
     if (abbe_yaml_line(e->yaml, node) == 0) break;
     abbe_yaml_bytes s = abbe_yaml_edit_span_of(e, node);
     found = s.from == from && s.to == to;
   }
-  if (result == ABBE_OK && !found) {
+  if (!found) {
     abbe_yaml_edit bad = *e;
     *e = before;
     before = bad;
-    result = not_a_value(value, what, error);
+    ABBE_TRY(not_a_value(value, what, error));
   }
-  abbe_yaml_edit_free(&before);
-  return result;
+  return ABBE_OK;
 }
 
 char *abbe_yaml_edit_closed(FILE *stream, char **text) {

@@ -214,10 +214,9 @@ static abbe_result show_fit_yaml(const abbe_material *m, abbe_error *error) {
   ABBE_TRY(abbe_material_n(m, high, &n, error));
   abbe_dispersion fit[2];
   double max_error[2];
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < 2; i++)
     ABBE_TRY(abbe_fit_dispersion(&m->dispersion, (size_t)i + 2, low, high, &fit[i], &max_error[i],
                                  error));
-  }
   printf("fit:\n");
   for (int i = 0; i < 2; i++) {
     printf("  cauchy%d: {coefficients: [", i + 2);

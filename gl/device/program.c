@@ -60,8 +60,8 @@ static abbe_result expand(source *s, const char *name, const char *text, abbe_er
     return abbe_error_set(error, ABBE_GL, "shader '%s' includes too many files", name);
   int file = s->files++;
   s->file[file] = name;
-  abbe_result result = set_line(s, 1, file, error);
-  for (int line = 1; result == ABBE_OK && *text != '\0'; line++) {
+  ABBE_TRY(set_line(s, 1, file, error));
+  for (int line = 1; *text != '\0'; line++) {
     size_t size = strcspn(text, "\n");
     size += text[size] == '\n';
     char included[64];
@@ -69,14 +69,14 @@ static abbe_result expand(source *s, const char *name, const char *text, abbe_er
       const char *known = NULL;
       for (size_t i = 0; abbe_shader_files[i].name != NULL; i++)
         if (strcmp(abbe_shader_files[i].name, included) == 0) known = abbe_shader_files[i].name;
-      result = include_file(s, known != NULL ? known : included, error);
-      if (result == ABBE_OK) result = set_line(s, line + 1, file, error);
+      ABBE_TRY(include_file(s, known != NULL ? known : included, error));
+      ABBE_TRY(set_line(s, line + 1, file, error));
     } else {
-      result = append(s, text, size, error);
+      ABBE_TRY(append(s, text, size, error));
     }
     text += size;
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* ---- definitions ---- */

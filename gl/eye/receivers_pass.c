@@ -264,20 +264,20 @@ abbe_result abbe_receivers_pass_make(const abbe_lighting *lighting,
                                      const abbe_shader_variant *variant, abbe_receivers_pass *out,
                                      abbe_error *error) {
   out->lighting = lighting;
-  abbe_result result = make_targets(out, error);
-  if (result == ABBE_OK && takes_rays(lighting->scene))
-    result = abbe_shader_variant_compute(variant, lighting->scene->gpu, "receiver_rays.comp", NULL,
-                                         &out->rays, error);
-  else if (result == ABBE_OK)
-    result = abbe_shader_variant_program(variant, lighting->scene->gpu, stages, 2, NULL, &out->lit,
-                                         error);
-  if (result == ABBE_OK && variant->area_lights > 0 && out->rays == 0)
-    result = abbe_shader_variant_program(variant, lighting->scene->gpu, area_lights, 2, NULL,
-                                         &out->area_lights, error);
-  if (result == ABBE_OK && variant->environment)
-    result = abbe_shader_variant_program(variant, lighting->scene->gpu, behind, 2, NULL,
-                                         &out->surroundings, error);
-  return result == ABBE_OK && out->rays == 0 ? make_unlit(out, variant, error) : result;
+  ABBE_TRY(make_targets(out, error));
+  if (takes_rays(lighting->scene))
+    ABBE_TRY(abbe_shader_variant_compute(variant, lighting->scene->gpu, "receiver_rays.comp", NULL,
+                                         &out->rays, error));
+  else
+    ABBE_TRY(abbe_shader_variant_program(variant, lighting->scene->gpu, stages, 2, NULL, &out->lit,
+                                         error));
+  if (variant->area_lights > 0 && out->rays == 0)
+    ABBE_TRY(abbe_shader_variant_program(variant, lighting->scene->gpu, area_lights, 2, NULL,
+                                         &out->area_lights, error));
+  if (variant->environment)
+    ABBE_TRY(abbe_shader_variant_program(variant, lighting->scene->gpu, behind, 2, NULL,
+                                         &out->surroundings, error));
+  return out->rays == 0 ? make_unlit(out, variant, error) : ABBE_OK;
 }
 
 void abbe_receivers_pass_free(abbe_receivers_pass *pass) {

@@ -1,7 +1,7 @@
 #include "scenes/cuts/cut_meets.h"
 
 #include "base/maths.h"
-#include "scenes/cuts/cut_measures.h"
+#include "scenes/cuts/cut_stretch.h"
 
 #include <gsl/gsl_eigen.h>
 

@@ -107,26 +107,24 @@ abbe_result abbe_camera_read(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera *
   static const char *const places[] = {"eye", "target"};
   double *place[] = {out->eye, out->target};
   memcpy(out->up, (const double[3]){0.0, 0.0, 1.0}, sizeof out->up);
-  abbe_result result = abbe_yaml_require(yaml, root, "camera", &node, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(abbe_yaml_require(yaml, root, "camera", &node, error));
   const bool framed = abbe_yaml_get(yaml, node, "frame").id != 0;
-  for (int i = 0; i < 2 && result == ABBE_OK; i++)
+  for (int i = 0; i < 2; i++)
     if (!framed || abbe_yaml_get(yaml, node, places[i]).id != 0)
-      result = abbe_scene_value_point(yaml, node, places[i], place[i], error);
-  if (result == ABBE_OK)
-    result =
-        abbe_yaml_get_numbers(yaml, node, "up", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out->up, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "fov", 0.1, 170, &fov, error);
+      ABBE_TRY(abbe_scene_value_point(yaml, node, places[i], place[i], error));
+  ABBE_TRY(
+      abbe_yaml_get_numbers(yaml, node, "up", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out->up, error));
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "fov", 0.1, 170, &fov, error));
   out->fov_y_rad = fov * ABBE_DEGREE;
-  if (result == ABBE_OK) result = read_size(yaml, node, out, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_bool(yaml, node, "inside", &out->inside, error);
+  ABBE_TRY(read_size(yaml, node, out, error));
+  ABBE_TRY(abbe_yaml_get_bool(yaml, node, "inside", &out->inside, error));
   double number;
-  if (result == ABBE_OK) result = read_frame(yaml, node, error);
-  if (result == ABBE_OK) result = read_lens(yaml, node, &number, error);
-  if (result == ABBE_OK) result = read_aperture(yaml, node, &number, error);
-  if (result == ABBE_OK) result = read_exposure(yaml, node, out, error);
-  if (result == ABBE_OK) result = abbe_scene_value_polariser(yaml, node, &out->polariser, error);
-  return result == ABBE_OK ? abbe_yaml_check_keys(yaml, node, "the camera", error) : result;
+  ABBE_TRY(read_frame(yaml, node, error));
+  ABBE_TRY(read_lens(yaml, node, &number, error));
+  ABBE_TRY(read_aperture(yaml, node, &number, error));
+  ABBE_TRY(read_exposure(yaml, node, out, error));
+  ABBE_TRY(abbe_scene_value_polariser(yaml, node, &out->polariser, error));
+  return abbe_yaml_check_keys(yaml, node, "the camera", error);
 }
 
 /* ---- frame ---- */

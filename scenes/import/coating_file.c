@@ -163,15 +163,12 @@ static abbe_result read_alpha(const abbe_object_reading *r, abbe_yaml_node node,
   (void)table;
   abbe_yaml_node alpha = node;
   abbe_coating *out = &all->coating[all->count++];
-  abbe_result result = ABBE_OK;
   const bool some = abbe_yaml_is_mapping(r->yaml, node);
-  if (some) result = abbe_yaml_require(r->yaml, node, "alpha", &alpha, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_number(r->yaml, alpha, "roughness", ABBE_MICROFACETS_LEAST, 1, &out->alpha,
-                              error);
-  if (result == ABBE_OK && some) result = read_faces(r, node, out, error);
-  return result == ABBE_OK && some ? abbe_yaml_check_keys(r->yaml, node, "a 'roughness'", error)
-                                   : result;
+  if (some) ABBE_TRY(abbe_yaml_require(r->yaml, node, "alpha", &alpha, error));
+  ABBE_TRY(
+      abbe_yaml_number(r->yaml, alpha, "roughness", ABBE_MICROFACETS_LEAST, 1, &out->alpha, error));
+  if (some) ABBE_TRY(read_faces(r, node, out, error));
+  return some ? abbe_yaml_check_keys(r->yaml, node, "a 'roughness'", error) : ABBE_OK;
 }
 
 /* One entry under the key, or a list of them. */
@@ -210,10 +207,9 @@ abbe_result abbe_object_read_coating(const abbe_object_reading *r, const abbe_ma
   if (node.id != 0 && out->material == NULL)
     return abbe_yaml_fail(r->yaml, node, error,
                           "'coating' is on what refracts; this object has no 'material'");
-  const abbe_result result = read_all(r, "coating", table, read_one, &out->coatings, error);
-  return result == ABBE_OK && out->material != NULL
-             ? read_all(r, "roughness", table, read_alpha, &out->roughness, error)
-             : result;
+  ABBE_TRY(read_all(r, "coating", table, read_one, &out->coatings, error));
+  return out->material != NULL ? read_all(r, "roughness", table, read_alpha, &out->roughness, error)
+                               : ABBE_OK;
 }
 
 /* --- which face has which --- */

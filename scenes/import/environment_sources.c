@@ -123,14 +123,13 @@ static abbe_result add(reading *r, abbe_yaml_node node, const abbe_environment_s
 static abbe_result read_colour(const abbe_yaml *yaml, abbe_yaml_node node, const char *what,
                                double out[3], abbe_error *error) {
   const bool list = abbe_yaml_is_sequence(yaml, node);
-  abbe_result result = ABBE_OK;
   if (list && abbe_yaml_count(yaml, node) != 3)
     return abbe_yaml_fail(yaml, node, error, "'%s' wants a number or [red, green, blue]", what);
-  for (size_t k = 0; k < (list ? 3 : 1) && result == ABBE_OK; k++)
-    result = abbe_yaml_number(yaml, list ? abbe_yaml_item(yaml, node, k) : node, what, 0,
-                              ABBE_SCENE_BRIGHTEST, &out[k], error);
+  for (size_t k = 0; k < (list ? 3 : 1); k++)
+    ABBE_TRY(abbe_yaml_number(yaml, list ? abbe_yaml_item(yaml, node, k) : node, what, 0,
+                              ABBE_SCENE_BRIGHTEST, &out[k], error));
   if (!list) out[1] = out[2] = out[0];
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result require_colour(const reading *r, abbe_yaml_node node, const char *key,
@@ -219,11 +218,10 @@ static abbe_result read_sky_type(const reading *r, abbe_yaml_node node, int *out
                           "'type' is clear, overcast, or the number of one of the CIE's standard "
                           "skies, 1 to %d",
                           ABBE_SKY_TYPES);
-  abbe_result result = abbe_yaml_number(r->yaml, value, "type", 1, ABBE_SKY_TYPES, &number, error);
+  ABBE_TRY(abbe_yaml_number(r->yaml, value, "type", 1, ABBE_SKY_TYPES, &number, error));
   *out = (int)number;
-  if (result == ABBE_OK && number != *out)
-    result = abbe_yaml_fail(r->yaml, value, error, "'type' wants a whole number");
-  return result;
+  if (number != *out) return abbe_yaml_fail(r->yaml, value, error, "'type' wants a whole number");
+  return ABBE_OK;
 }
 
 static abbe_result read_sky(reading *r, abbe_yaml_node node, abbe_error *error) {
@@ -271,26 +269,26 @@ static abbe_result read_softbox(reading *r, abbe_yaml_node node, abbe_error *err
                     abbe_yaml_get(r->yaml, node, "height").id ||
                     abbe_yaml_get(r->yaml, node, "roll").id;
   double width = 0, height = 0, angle = 0;
-  abbe_result result = read_place(r, node, &box, NULL, error);
-  if (result == ABBE_OK) result = require_colour(r, node, "radiance", box.radiance, error);
-  if (result == ABBE_OK && disk == flat)
-    result = abbe_yaml_fail(r->yaml, node, error,
-                            "a softbox has either a 'width' and a 'height' or a 'radius', in "
-                            "degrees; this one has %s",
-                            disk ? "both" : "neither");
-  if (result == ABBE_OK && disk) {
+  ABBE_TRY(read_place(r, node, &box, NULL, error));
+  ABBE_TRY(require_colour(r, node, "radiance", box.radiance, error));
+  if (disk == flat)
+    return abbe_yaml_fail(r->yaml, node, error,
+                          "a softbox has either a 'width' and a 'height' or a 'radius', in "
+                          "degrees; this one has %s",
+                          disk ? "both" : "neither");
+  if (disk) {
     box.kind = ABBE_SOURCE_DISK;
-    result = require_angle(r, node, "radius", 0.05, 180, &box.radius_rad, error);
-  } else if (result == ABBE_OK) {
-    result = require_angle(r, node, "width", 0.1, 170, &width, error);
-    if (result == ABBE_OK) result = require_angle(r, node, "height", 0.1, 170, &height, error);
-    if (result == ABBE_OK) result = read_angle(r, node, "roll", -360, 360, &angle, error);
+    ABBE_TRY(require_angle(r, node, "radius", 0.05, 180, &box.radius_rad, error));
+  } else {
+    ABBE_TRY(require_angle(r, node, "width", 0.1, 170, &width, error));
+    ABBE_TRY(require_angle(r, node, "height", 0.1, 170, &height, error));
+    ABBE_TRY(read_angle(r, node, "roll", -360, 360, &angle, error));
     box.half_width_rad = width / 2;
     box.half_height_rad = height / 2;
     roll(&box, angle);
   }
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(r->yaml, node, "a softbox", error);
-  return result == ABBE_OK ? add(r, node, &box, error) : result;
+  ABBE_TRY(abbe_yaml_check_keys(r->yaml, node, "a softbox", error));
+  return add(r, node, &box, error);
 }
 
 static abbe_result read_spot(reading *r, abbe_yaml_node node, abbe_error *error) {

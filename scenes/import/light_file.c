@@ -31,20 +31,18 @@ static abbe_result read_direction(abbe_yaml *yaml, abbe_yaml_node node, abbe_lig
                           "a %s light has either a 'direction' (the way the light travels) or a "
                           "'target' point; this one has %s",
                           light_kinds[out->kind], direction.id ? "both" : "neither");
-  abbe_result result = ABBE_OK;
   if (direction.id) {
-    result = abbe_scene_value_point(yaml, node, "direction", out->direction, error);
+    ABBE_TRY(abbe_scene_value_point(yaml, node, "direction", out->direction, error));
   } else {
     if (out->kind == ABBE_LIGHT_DIRECTIONAL)
-      result = abbe_scene_value_point(yaml, node, "position", out->position, error);
-    if (result == ABBE_OK)
-      result = abbe_scene_value_point(yaml, node, "target", out->direction, error);
+      ABBE_TRY(abbe_scene_value_point(yaml, node, "position", out->position, error));
+    ABBE_TRY(abbe_scene_value_point(yaml, node, "target", out->direction, error));
     abbe_vector_subtract(out->direction, out->position, out->direction);
   }
-  if (result == ABBE_OK && !abbe_vector_normalise(out->direction))
-    result = abbe_yaml_fail(yaml, direction.id ? direction : target, error,
-                            "the light's direction is zero; it must point somewhere");
-  return result;
+  if (!abbe_vector_normalise(out->direction))
+    return abbe_yaml_fail(yaml, direction.id ? direction : target, error,
+                          "the light's direction is zero; it must point somewhere");
+  return ABBE_OK;
 }
 
 static abbe_result read_cone(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
@@ -162,28 +160,25 @@ static abbe_result read_light(abbe_yaml *yaml, abbe_yaml_node node, const char *
                               abbe_light *out, abbe_error *error) {
   int kind = 0;
   abbe_yaml_node ignored;
-  abbe_result result = abbe_yaml_require(yaml, node, "kind", &ignored, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_choice(yaml, node, "kind", light_kinds, &kind, error);
+  ABBE_TRY(abbe_yaml_require(yaml, node, "kind", &ignored, error));
+  ABBE_TRY(abbe_yaml_get_choice(yaml, node, "kind", light_kinds, &kind, error));
   out->kind = (abbe_light_kind)kind;
-  if (result == ABBE_OK) result = abbe_yaml_get_name(yaml, node, "name", &out->name, error);
-  if (result == ABBE_OK && !out->name) {
+  ABBE_TRY(abbe_yaml_get_name(yaml, node, "name", &out->name, error));
+  if (!out->name) {
     char name[64];
     snprintf(name, sizeof name, "light on line %zu", abbe_yaml_line(yaml, node));
     out->name = strdup(name);
-    if (!out->name) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
+    if (!out->name) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
   }
-  if (result == ABBE_OK) result = read_shape_of_light(yaml, node, out, error);
-  if (result == ABBE_OK) result = read_power(yaml, node, out, error);
-  if (result == ABBE_OK)
-    result = abbe_scene_value_illuminant(yaml, node, folder, &out->illuminant,
-                                         &out->illuminant_path, error);
-  if (result == ABBE_OK && out->kind == ABBE_LIGHT_POINT)
-    result = refuse_key(yaml, node, "polariser", kind,
-                        "a sheet is flat, and it shines to all sides: take a spot", error);
-  if (result == ABBE_OK) result = abbe_scene_value_polariser(yaml, node, &out->polariser, error);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "a light", error);
-  return result;
+  ABBE_TRY(read_shape_of_light(yaml, node, out, error));
+  ABBE_TRY(read_power(yaml, node, out, error));
+  ABBE_TRY(abbe_scene_value_illuminant(yaml, node, folder, &out->illuminant, &out->illuminant_path,
+                                       error));
+  if (out->kind == ABBE_LIGHT_POINT)
+    ABBE_TRY(refuse_key(yaml, node, "polariser", kind,
+                        "a sheet is flat, and it shines to all sides: take a spot", error));
+  ABBE_TRY(abbe_scene_value_polariser(yaml, node, &out->polariser, error));
+  return abbe_yaml_check_keys(yaml, node, "a light", error);
 }
 
 abbe_result abbe_lights_read(abbe_yaml *yaml, abbe_yaml_node root, const char *folder,

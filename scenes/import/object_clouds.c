@@ -58,20 +58,19 @@ static abbe_result read_cloud(const abbe_object_reading *r, abbe_yaml_node node,
   out->name = malloc(size);
   if (out->name == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
   snprintf(out->name, size, "%s (cloud %zu)", stone->name, number);
-  abbe_result result = read_shape(r, node, middle, &surface, &out->mesh, error);
-  if (result == ABBE_OK) result = abbe_medium_file_read(r->yaml, node, false, &out->medium, error);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(r->yaml, node, "a cloud", error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(read_shape(r, node, middle, &surface, &out->mesh, error));
+  ABBE_TRY(abbe_medium_file_read(r->yaml, node, false, &out->medium, error));
+  ABBE_TRY(abbe_yaml_check_keys(r->yaml, node, "a cloud", error));
   place_of(r, stone, surface.matrix);
   abbe_transform_translate(middle, step);
   abbe_transform_multiply(surface.matrix, step, surface.matrix);
-  result = abbe_object_place(&surface, out, 1, &one, error);
+  ABBE_TRY(abbe_object_place(&surface, out, 1, &one, error));
   memcpy(out->axis, stone->axis, sizeof out->axis);
   memcpy(out->axis_x, stone->axis_x, sizeof out->axis_x);
-  for (size_t v = 0; v < out->mesh.vertex_count && result == ABBE_OK; v++)
+  for (size_t v = 0; v < out->mesh.vertex_count; v++)
     if (!abbe_object_contains(stone, out->mesh.position[v]))
-      result = abbe_yaml_fail(r->yaml, node, error, "the cloud reaches out of '%s'", stone->name);
-  return result;
+      return abbe_yaml_fail(r->yaml, node, error, "the cloud reaches out of '%s'", stone->name);
+  return ABBE_OK;
 }
 
 abbe_result abbe_object_read_clouds(const abbe_object_reading *r, abbe_object *out, size_t room,

@@ -248,21 +248,20 @@ static abbe_result read_medium(const abbe_object_reading *r, abbe_object *out, a
 static abbe_result read_roughness(const abbe_object_reading *r, abbe_yaml_node node,
                                   abbe_microfacets *out, abbe_error *error) {
   double both[2] = {0, 0};
-  abbe_result result;
   if (abbe_yaml_is_sequence(r->yaml, node)) {
-    result = abbe_yaml_get_numbers(r->yaml, r->node, "roughness", 2, 0, 1, both, error);
+    ABBE_TRY(abbe_yaml_get_numbers(r->yaml, r->node, "roughness", 2, 0, 1, both, error));
   } else {
-    result = abbe_yaml_get_number(r->yaml, r->node, "roughness", 0, 1, &both[0], error);
+    ABBE_TRY(abbe_yaml_get_number(r->yaml, r->node, "roughness", 0, 1, &both[0], error));
     both[1] = both[0];
   }
   const double least = fmin(both[0], both[1]), most = fmax(both[0], both[1]);
-  if (result == ABBE_OK && most > 0 && least < ABBE_MICROFACETS_LEAST)
+  if (most > 0 && least < ABBE_MICROFACETS_LEAST)
     return abbe_yaml_fail(r->yaml, node, error,
                           "'roughness' is 0, of a smooth mirror, or from %g to 1, both along the "
                           "grooves and across",
                           ABBE_MICROFACETS_LEAST);
   *out = (abbe_microfacets){both[0], both[1]};
-  return result;
+  return ABBE_OK;
 }
 
 /* In the object's own coordinates, until it is placed. */

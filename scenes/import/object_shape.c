@@ -371,29 +371,25 @@ static abbe_result read_own_material(const abbe_object_reading *r, abbe_object *
 
 static abbe_result read_mesh(abbe_object_reading *r, abbe_object *out, abbe_error *error) {
   const bool says = abbe_yaml_get(r->yaml, r->node, "smooth").id != 0;
-  char *name = NULL, *part = NULL;
+  ABBE_FREED char *name = NULL, *part = NULL;
   size_t levels = 0;
   bool smooth = true;
-  abbe_result result = abbe_yaml_get_string(r->yaml, r->node, "mesh", &name, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_string(r->yaml, r->node, "part", &part, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_bool(r->yaml, r->node, "smooth", &smooth, error);
-  if (result == ABBE_OK) result = read_count(r, "subdivide", 0, 8, &levels, error);
-  if (result == ABBE_OK && levels > 0 && !smooth)
-    result = abbe_yaml_fail(r->yaml, r->node, error,
-                            "'subdivide' makes a smooth surface; leave it out or leave out "
-                            "'smooth: false'");
+  ABBE_TRY(abbe_yaml_get_string(r->yaml, r->node, "mesh", &name, error));
+  ABBE_TRY(abbe_yaml_get_string(r->yaml, r->node, "part", &part, error));
+  ABBE_TRY(abbe_yaml_get_bool(r->yaml, r->node, "smooth", &smooth, error));
+  ABBE_TRY(read_count(r, "subdivide", 0, 8, &levels, error));
+  if (levels > 0 && !smooth)
+    return abbe_yaml_fail(r->yaml, r->node, error,
+                          "'subdivide' makes a smooth surface; leave it out or leave out "
+                          "'smooth: false'");
   if (says || levels > 0) r->normals = smooth ? ABBE_NORMALS_SMOOTH : ABBE_NORMALS_FLAT;
-  if (result == ABBE_OK) out->mesh_path = abbe_scene_value_path(r->folder, name);
-  if (result == ABBE_OK && !out->mesh_path)
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
-  if (result == ABBE_OK) result = read_own_material(r, out, &part, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_mesh_load_part(out->mesh_path, part, r->normals, &out->mesh, &out->mesh_others, error);
-  if (result == ABBE_OK && levels > 0) result = abbe_mesh_subdivide(&out->mesh, levels, error);
-  free(name);
-  free(part);
-  return result;
+  out->mesh_path = abbe_scene_value_path(r->folder, name);
+  if (!out->mesh_path) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
+  ABBE_TRY(read_own_material(r, out, &part, error));
+  ABBE_TRY(
+      abbe_mesh_load_part(out->mesh_path, part, r->normals, &out->mesh, &out->mesh_others, error));
+  if (levels > 0) ABBE_TRY(abbe_mesh_subdivide(&out->mesh, levels, error));
+  return ABBE_OK;
 }
 
 abbe_result abbe_object_read_surface(abbe_object_reading *r, abbe_object *object,

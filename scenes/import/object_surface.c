@@ -318,14 +318,14 @@ static abbe_result shape_one(const abbe_object_surface *s, abbe_object *out, abb
 
 static abbe_result place_one(const abbe_object_surface *s, const double matrix[16],
                              abbe_object *out, abbe_error *error) {
-  abbe_result result = abbe_mesh_transform(&out->mesh, matrix, error);
+  ABBE_TRY(abbe_mesh_transform(&out->mesh, matrix, error));
   abbe_object_turn_axes(out, matrix);
   abbe_brushing_move(&out->brushing, matrix);
-  if (result == ABBE_OK) result = find_exact(s, matrix, out, error);
-  if (result == ABBE_OK) abbe_object_bound(out);
-  if (result == ABBE_OK && !(abbe_vector_finite(out->min) && abbe_vector_finite(out->max)))
-    result = abbe_error_set(error, ABBE_GEOMETRY, "the placed object has no finite size");
-  return result;
+  ABBE_TRY(find_exact(s, matrix, out, error));
+  abbe_object_bound(out);
+  if (!(abbe_vector_finite(out->min) && abbe_vector_finite(out->max)))
+    return abbe_error_set(error, ABBE_GEOMETRY, "the placed object has no finite size");
+  return ABBE_OK;
 }
 
 abbe_result abbe_object_place(const abbe_object_surface *s, abbe_object *out, size_t room,

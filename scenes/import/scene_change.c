@@ -311,15 +311,12 @@ static abbe_result value_at(abbe_yaml *yaml, abbe_yaml_node node, double time, k
                             abbe_error *error) {
   double repeat = 0;
   const abbe_yaml_node length = abbe_yaml_get(yaml, node, "repeat");
-  abbe_result result =
-      abbe_yaml_get_number(yaml, node, "repeat", 0, ABBE_SCENE_FAR, &repeat, error);
-  if (result == ABBE_OK && length.id != 0 && !(repeat > 0))
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "repeat", 0, ABBE_SCENE_FAR, &repeat, error));
+  if (length.id != 0 && !(repeat > 0))
     return abbe_yaml_fail(yaml, length, error, "'repeat' is a time in seconds, above 0");
   if (repeat > 0) time -= repeat * floor(time / repeat);
-  if (result == ABBE_OK)
-    result = interpolate(yaml, abbe_yaml_get(yaml, node, "keyframes"), time, out, error);
-  return result == ABBE_OK ? abbe_yaml_check_keys(yaml, node, "a value with keyframes", error)
-                           : result;
+  ABBE_TRY(interpolate(yaml, abbe_yaml_get(yaml, node, "keyframes"), time, out, error));
+  return abbe_yaml_check_keys(yaml, node, "a value with keyframes", error);
 }
 
 abbe_result abbe_scene_change_keyframes(abbe_yaml_edit *edit, abbe_error *error) {

@@ -151,25 +151,24 @@ static abbe_result read_scene(abbe_yaml *yaml, const char *folder,
   const abbe_yaml_node root = abbe_yaml_root(yaml);
   if (!abbe_yaml_is_mapping(yaml, root))
     return abbe_yaml_fail(yaml, root, error, "a scene must be a mapping (key: value)");
-  abbe_result result = abbe_yaml_get_string(yaml, root, "description", &out->description, error);
-  if (result == ABBE_OK) result = read_brightness(yaml, root, out, error);
-  if (result == ABBE_OK) result = read_conditions(yaml, root, &out->conditions, error);
-  if (result == ABBE_OK) result = abbe_scene_value_time(yaml, &out->time, error);
-  if (result == ABBE_OK) result = abbe_camera_read(yaml, root, &out->camera, error);
-  if (result == ABBE_OK) result = abbe_medium_file_read(yaml, root, true, &out->medium, error);
-  if (result == ABBE_OK)
-    result = abbe_lights_read(yaml, root, folder, &out->light, &out->light_count, error);
+  ABBE_TRY(abbe_yaml_get_string(yaml, root, "description", &out->description, error));
+  ABBE_TRY(read_brightness(yaml, root, out, error));
+  ABBE_TRY(read_conditions(yaml, root, &out->conditions, error));
+  ABBE_TRY(abbe_scene_value_time(yaml, &out->time, error));
+  ABBE_TRY(abbe_camera_read(yaml, root, &out->camera, error));
+  ABBE_TRY(abbe_medium_file_read(yaml, root, true, &out->medium, error));
+  ABBE_TRY(abbe_lights_read(yaml, root, folder, &out->light, &out->light_count, error));
   /* all keys are known before the costly part begins */
   abbe_yaml_get(yaml, root, "materials");
   abbe_yaml_get(yaml, root, "objects");
   abbe_yaml_get(yaml, root, "environment");
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, root, "a scene", error);
-  if (result == ABBE_OK) result = read_environment(yaml, root, folder, out, error);
-  if (result == ABBE_OK) result = read_table(yaml, root, folder, options, out, error);
-  if (result == ABBE_OK) result = read_objects(yaml, root, folder, out, error);
-  if (result == ABBE_OK) result = place_materials(yaml, root, out, error);
-  if (result == ABBE_OK) result = abbe_camera_frame(yaml, root, out, error);
-  return result == ABBE_OK ? abbe_scene_check(out, error) : result;
+  ABBE_TRY(abbe_yaml_check_keys(yaml, root, "a scene", error));
+  ABBE_TRY(read_environment(yaml, root, folder, out, error));
+  ABBE_TRY(read_table(yaml, root, folder, options, out, error));
+  ABBE_TRY(read_objects(yaml, root, folder, out, error));
+  ABBE_TRY(place_materials(yaml, root, out, error));
+  ABBE_TRY(abbe_camera_frame(yaml, root, out, error));
+  return abbe_scene_check(out, error);
 }
 
 /* The folder of a path with its slash, "" for a plain name; malloc'd. */

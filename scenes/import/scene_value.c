@@ -85,12 +85,11 @@ abbe_result abbe_scene_value_polariser(abbe_yaml *yaml, abbe_yaml_node mapping, 
   if (node.id == 0) return ABBE_OK;
   int kind = 0;
   double angle = 0;
-  abbe_result result = abbe_yaml_get_choice(yaml, node, "kind", kinds, &kind, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, node, "angle", -360, 360, &angle, error);
-  if (result == ABBE_OK && kind != 0 && abbe_yaml_get(yaml, node, "angle").id != 0)
+  ABBE_TRY(abbe_yaml_get_choice(yaml, node, "kind", kinds, &kind, error));
+  ABBE_TRY(abbe_yaml_get_number(yaml, node, "angle", -360, 360, &angle, error));
+  if (kind != 0 && abbe_yaml_get(yaml, node, "angle").id != 0)
     return abbe_yaml_fail(yaml, node, error,
                           "a circular polariser is alike at every 'angle': leave it out");
   *out = (abbe_polariser){(abbe_polariser_kind)(kind + 1), angle * ABBE_DEGREE};
-  return result == ABBE_OK ? abbe_yaml_check_keys(yaml, node, "a polariser", error) : result;
+  return abbe_yaml_check_keys(yaml, node, "a polariser", error);
 }

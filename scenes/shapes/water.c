@@ -130,21 +130,20 @@ static abbe_result add_drop(const abbe_water_drop *drop, surface *s, abbe_error 
 static abbe_result add_drops(const abbe_water *w, surface *s, abbe_error *error) {
   const double lasts = hypot(w->size[0], w->size[1]) / SLOWEST;
   const abbe_water_rain *rain = &w->rain;
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < w->drop_count && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < w->drop_count; i++) {
     const double age = w->time - w->drop[i].time;
-    if (age >= 0 && age < lasts) result = add_drop(&w->drop[i], s, error);
+    if (age >= 0 && age < lasts) ABBE_TRY(add_drop(&w->drop[i], s, error));
   }
-  if (!(rain->every > 0)) return result;
-  for (int64_t i = (int64_t)floor(w->time / rain->every); result == ABBE_OK; i--) {
+  if (!(rain->every > 0)) return ABBE_OK;
+  for (int64_t i = (int64_t)floor(w->time / rain->every);; i--) {
     abbe_water_drop drop = {
         .time = (double)i * rain->every, .depth = rain->depth, .radius = rain->radius};
     if (w->time - drop.time >= lasts) break;
     for (int axis = 0; axis < 2; axis++)
       drop.at[axis] = w->size[axis] * (random_at(rain->seed, i, axis) - 0.5);
-    result = add_drop(&drop, s, error);
+    ABBE_TRY(add_drop(&drop, s, error));
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* --- what is possible --- */

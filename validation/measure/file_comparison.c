@@ -298,12 +298,9 @@ abbe_result abbe_file_comparison_draw(const abbe_file_comparison *c, const char 
   char title[160];
   snprintf(title, sizeof title, "%.70s less %.70s", abbe_file_name(c->path[1]),
            abbe_file_name(c->path[0]));
-  abbe_result result = ABBE_OK;
   if (range == 0)
-    result = abbe_difference_picture_range(&c->field[0], &c->field[1], scale, &range, error);
+    ABBE_TRY(abbe_difference_picture_range(&c->field[0], &c->field[1], scale, &range, error));
   if (range == 0) range = c->comparison.unit; /* nothing differs */
-  if (result == ABBE_OK)
-    result =
-        abbe_difference_picture_write(path, &c->field[0], &c->field[1], scale, range, title, error);
-  return result;
+  return abbe_difference_picture_write(path, &c->field[0], &c->field[1], scale, range, title,
+                                       error);
 }

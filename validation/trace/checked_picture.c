@@ -123,10 +123,9 @@ static abbe_result bounded_trace_go_on(const abbe_bounded_trace_desc *d, abbe_tr
   const abbe_trace_run_desc run = {
       .passes = passes, .progress = d->progress, .user = d->user, .stop = d->stop};
   const abbe_denoise_desc denoise = {.threads = d->trace.threads};
-  abbe_result result = abbe_trace_run(tracer, &run, error);
-  if (result == ABBE_OK) result = abbe_tracer_picture(tracer, picture, error);
-  return result == ABBE_OK && d->filtered ? abbe_denoise_picture(picture, &denoise, filtered, error)
-                                          : result;
+  ABBE_TRY(abbe_trace_run(tracer, &run, error));
+  ABBE_TRY(abbe_tracer_picture(tracer, picture, error));
+  return d->filtered ? abbe_denoise_picture(picture, &denoise, filtered, error) : ABBE_OK;
 }
 
 static abbe_result trace(const abbe_bounded_trace_desc *d, abbe_tracer *tracer, size_t passes,

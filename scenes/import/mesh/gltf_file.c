@@ -215,11 +215,11 @@ static abbe_result read_numbers(const abbe_gltf *g, const cJSON *node, const cha
 
 static abbe_result read_transform(const abbe_gltf *g, const cJSON *node, double out[16]) {
   double t[3] = {0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
-  abbe_result result = read_numbers(g, node, "translation", 3, t);
-  if (result == ABBE_OK) result = read_numbers(g, node, "rotation", 4, q);
-  if (result == ABBE_OK) result = read_numbers(g, node, "scale", 3, s);
+  ABBE_TRY(read_numbers(g, node, "translation", 3, t));
+  ABBE_TRY(read_numbers(g, node, "rotation", 4, q));
+  ABBE_TRY(read_numbers(g, node, "scale", 3, s));
   compose(t, q, s, out);
-  return result == ABBE_OK ? read_numbers(g, node, "matrix", 16, out) : result;
+  return read_numbers(g, node, "matrix", 16, out);
 }
 
 /* Each has a place, a turn and a size of its own within the node; lists may lack. */

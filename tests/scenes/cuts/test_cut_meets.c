@@ -1,6 +1,6 @@
 #include "scenes/cuts/cut_meets.h"
 
-#include "scenes/cuts/cut_measures.h"
+#include "scenes/cuts/cut_stretch.h"
 
 #include "tests/scenes/cuts/designs.h"
 

@@ -1,8 +1,9 @@
 /* A picture of another make against traced passes: how many of them, and which of the two is known
  * to keep the bound.
  */
-#include "tests/validation/trace_scene.h"
+#include "tests/check.h"
 
+#include "tests/validation/trace_scene.h"
 #include "validation/trace/checked_picture.h"
 
 #define SCENE CAMERA POINT_LIGHT FLOOR BEADS("crown")
@@ -131,4 +132,34 @@ TEST(what_ends_it) {
   REFUSED(ABBE_INVALID_ARGUMENT, "",
           abbe_checked_picture_make(&scene, &desc, &small, &traced, &out, &error));
   assert_null(traced.data);
+}
+
+/* What fits into the time that is left. */
+
+static double two_seconds(void *user) {
+  ++*(int *)user;
+  return 2;
+}
+
+static double none(void *user) {
+  (void)user;
+  return -1;
+}
+
+TEST(what_fits) {
+  int asked = 0;
+  const abbe_time_left two = {two_seconds, &asked}, over = {none, NULL};
+  assert_near(abbe_time_left_seconds(&two), 2, 0);
+  assert_true(abbe_time_left_holds(&two, 1.5));
+  assert_false(abbe_time_left_holds(&two, 1.6)); /* it may take a third longer */
+  assert_int_equal(asked, 3);
+  assert_false(abbe_time_left_holds(&two, NAN));
+  assert_false(abbe_time_left_holds(&over, 0));
+}
+
+TEST(without_an_end) {
+  const abbe_time_left always = {0};
+  assert_true(isinf(abbe_time_left_seconds(&always)));
+  assert_true(abbe_time_left_holds(&always, 1e9));
+  assert_true(abbe_time_left_holds(&always, NAN));
 }

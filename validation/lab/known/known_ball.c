@@ -125,14 +125,12 @@ static abbe_result add_crossing(abbe_known_run *run, double radius, double share
 
 abbe_result abbe_known_ball(abbe_known_run *run, abbe_error *error) {
   static const double radii[] = {1e-4, 5e-3, 1e4}, shares[] = {0.5, 0.9};
-  abbe_known_stage stage;
+  ABBE_OWNED(abbe_known_stage, stage) = {0};
   ABBE_TRY(abbe_known_stage_make(&stage, error, ball_text, 5e-3, "n-bk7"));
-  abbe_result result = add_focus(run, &stage, 5e-3, error);
-  abbe_known_stage_free(&stage);
+  ABBE_TRY(add_focus(run, &stage, 5e-3, error));
   for (int r = 0; r < 3; r++)
-    for (int s = 0; s < 2 && result == ABBE_OK; s++)
-      result = add_crossing(run, radii[r], shares[s], error);
-  return result;
+    for (int s = 0; s < 2; s++) ABBE_TRY(add_crossing(run, radii[r], shares[s], error));
+  return ABBE_OK;
 }
 
 /* ---- the drop ---- */

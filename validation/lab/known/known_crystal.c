@@ -33,7 +33,7 @@ static abbe_result enter(abbe_known_stage *stage, const double axis[3], double i
 /* Straight onto the face: tan = (n_o^2 - n_e^2) tan(a) / (n_e^2 + n_o^2 tan^2(a)) for the axis at a
  * to the normal [BornWolf1999, 15.3]. */
 static abbe_result add_angle(abbe_known_run *run, double degrees, abbe_error *error) {
-  abbe_known_stage stage;
+  ABBE_OWNED(abbe_known_stage, stage) = {0};
   const double a = degrees / ABBE_KNOWN_DEGREES, axis[3] = {sin(a), 0, cos(a)};
   const double down[3] = {0, 0, -1};
   double n_o, n_e;
@@ -48,8 +48,8 @@ static abbe_result add_angle(abbe_known_run *run, double degrees, abbe_error *er
                            .reason = rounding};
   abbe_number_format(row.quantity, sizeof row.quantity,
                      "calcite, axis at %g degrees, between its rays", degrees);
-  abbe_result result = abbe_known_add(run, row, error);
-  if (result == ABBE_OK && stage.count == 3) {
+  ABBE_TRY(abbe_known_add(run, row, error));
+  if (stage.count == 3) {
     const double *out = stage.vertex[1].position;
     row = (abbe_known_answer){.unit = "thickness",
                               .exact = tangent,
@@ -59,17 +59,16 @@ static abbe_result add_angle(abbe_known_run *run, double degrees, abbe_error *er
                                         "it leaves, and the block is four times as wide as thick"};
     abbe_number_format(row.quantity, sizeof row.quantity,
                        "calcite, axis at %g degrees, image moved by", degrees);
-    result = abbe_known_add(run, row, error);
+    ABBE_TRY(abbe_known_add(run, row, error));
   }
-  abbe_known_stage_free(&stage);
-  return result;
+  return ABBE_OK;
 }
 
 /* Rows of an index across the plane of incidence: both waves obey Snell, the extraordinary one has
  * its field across that plane (s) and the ordinary one in it (p). */
 static abbe_result add_across(abbe_known_run *run, double degrees, bool extraordinary,
                               abbe_error *error) {
-  abbe_known_stage stage;
+  ABBE_OWNED(abbe_known_stage, stage) = {0};
   const double axis[3] = {0, 1, 0}, up[3] = {0, 0, 1}, i = degrees / ABBE_KNOWN_DEGREES;
   double n_o, n_e, back[3];
   ABBE_TRY(enter(&stage, axis, i, extraordinary ? "TT" : "tt", &n_o, &n_e, error));
@@ -84,19 +83,15 @@ static abbe_result add_across(abbe_known_run *run, double degrees, bool extraord
                            .reason = rounding};
   abbe_number_format(row.quantity, sizeof row.quantity,
                      "calcite, axis across, %s ray from %g degrees", name, degrees);
-  abbe_result result = abbe_known_add(run, row, error);
-  if (result == ABBE_OK) {
-    row = (abbe_known_answer){.unit = "share",
-                              .exact = (1 - r * r) / 2,
-                              .traced = stage.vertex[0].share,
-                              .tolerance = 2e-6,
-                              .reason = rounding};
-    abbe_number_format(row.quantity, sizeof row.quantity,
-                       "calcite, axis across, what the %s ray has from %g degrees", name, degrees);
-    result = abbe_known_add(run, row, error);
-  }
-  abbe_known_stage_free(&stage);
-  return result;
+  ABBE_TRY(abbe_known_add(run, row, error));
+  row = (abbe_known_answer){.unit = "share",
+                            .exact = (1 - r * r) / 2,
+                            .traced = stage.vertex[0].share,
+                            .tolerance = 2e-6,
+                            .reason = rounding};
+  abbe_number_format(row.quantity, sizeof row.quantity,
+                     "calcite, axis across, what the %s ray has from %g degrees", name, degrees);
+  return abbe_known_add(run, row, error);
 }
 
 /* One wave alone is inside, polarised along its own field. At a face whose plane of incidence holds
@@ -104,7 +99,7 @@ static abbe_result add_across(abbe_known_run *run, double degrees, bool extraord
  * crossed polarisers. The face takes the way that is requested, or else the strongest. */
 static abbe_result add_extinction(abbe_known_run *run, const double axis[3], const char *what,
                                   bool extraordinary, abbe_error *error) {
-  abbe_known_stage stage;
+  ABBE_OWNED(abbe_known_stage, stage) = {0};
   double n_o, n_e;
   ABBE_TRY(
       enter(&stage, axis, 40 / ABBE_KNOWN_DEGREES, extraordinary ? "Tr" : "tR", &n_o, &n_e, error));
@@ -120,9 +115,7 @@ static abbe_result add_extinction(abbe_known_run *run, const double axis[3], con
   abbe_number_format(row.quantity, sizeof row.quantity,
                      "calcite, axis %s, %s ray that becomes the other", what,
                      extraordinary ? "extraordinary" : "ordinary");
-  abbe_result result = abbe_known_add(run, row, error);
-  abbe_known_stage_free(&stage);
-  return result;
+  return abbe_known_add(run, row, error);
 }
 
 abbe_result abbe_known_crystal(abbe_known_run *run, abbe_error *error) {

@@ -75,11 +75,10 @@ static abbe_result enter_wedge(abbe_known_stage *stage, double incidence, bool *
 static abbe_result add_share(abbe_known_run *run, abbe_known_stage *stage, double degrees,
                              bool inside, abbe_error *error) {
   double n = 0, angle = degrees / ABBE_KNOWN_DEGREES, incidence = angle;
-  abbe_result result = abbe_known_stage_n(stage, ABBE_LINE_D_NM, &n, error);
+  ABBE_TRY(abbe_known_stage_n(stage, ABBE_LINE_D_NM, &n, error));
   if (inside) incidence = asin(n * sin(WEDGE_RAD - angle));
   bool there = false;
-  if (result == ABBE_OK) result = enter_wedge(stage, incidence, &there, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(enter_wedge(stage, incidence, &there, error));
   /* The slope near the critical angle is steep: the traced ray's own angle differs by 1e-7. */
   double exact = abbe_closed_form_fresnel(angle, inside ? 1 / n : n);
   double slope = fabs(abbe_closed_form_fresnel(angle - 1e-6, inside ? 1 / n : n) - exact) / 1e-6;
@@ -128,19 +127,16 @@ static abbe_result add_critical(abbe_known_run *run, const char *material, abbe_
 abbe_result abbe_known_fresnel(abbe_known_run *run, abbe_error *error) {
   static const double outside[] = {0, 30, 60, 75, 89}, inside[] = {0, 15, 30, 40, 41};
   static const char *const materials[] = {"n-bk7", "water", "diamond"};
-  abbe_known_stage stage;
+  ABBE_OWNED(abbe_known_stage, stage) = {0};
   double n = 0;
   ABBE_TRY(abbe_known_stage_make(&stage, error, wedge_text, "n-bk7"));
-  abbe_result result = abbe_known_stage_n(&stage, ABBE_LINE_D_NM, &n, error);
-  for (int i = 0; i < 5 && result == ABBE_OK; i++)
-    result = add_share(run, &stage, outside[i], false, error);
-  if (result == ABBE_OK) /* Brewster's */
-    result = add_share(run, &stage, atan(n) * ABBE_KNOWN_DEGREES, false, error);
-  for (int i = 0; i < 5 && result == ABBE_OK; i++)
-    result = add_share(run, &stage, inside[i], true, error);
-  abbe_known_stage_free(&stage);
-  for (int i = 0; i < 3 && result == ABBE_OK; i++) result = add_critical(run, materials[i], error);
-  return result;
+  ABBE_TRY(abbe_known_stage_n(&stage, ABBE_LINE_D_NM, &n, error));
+  for (int i = 0; i < 5; i++) ABBE_TRY(add_share(run, &stage, outside[i], false, error));
+  /* Brewster's */
+  ABBE_TRY(add_share(run, &stage, atan(n) * ABBE_KNOWN_DEGREES, false, error));
+  for (int i = 0; i < 5; i++) ABBE_TRY(add_share(run, &stage, inside[i], true, error));
+  for (int i = 0; i < 3; i++) ABBE_TRY(add_critical(run, materials[i], error));
+  return ABBE_OK;
 }
 
 /* ---- films ---- */

@@ -31,21 +31,18 @@ static abbe_result sum_so_far(const abbe_tracer *tracer, const abbe_rings *rings
                               abbe_error *error) {
   static const char *const names[3] = {"X", "Y", "Z"};
   double one[ABBE_RINGS_MAX];
-  abbe_image map = {0};
-  abbe_result result = abbe_tracer_map(tracer, &map, error);
-  for (int k = 0; k < 3 && result == ABBE_OK; k++) {
+  ABBE_OWNED(abbe_image, map) = {0};
+  ABBE_TRY(abbe_tracer_map(tracer, &map, error));
+  for (int k = 0; k < 3; k++) {
     size_t channel = abbe_image_find_channel(&map, names[k]);
-    if (channel == (size_t)-1 || map.width != rings->width || map.height != rings->height) {
-      result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                              "the receiver map has no channel %s of %zu x %zu texels", names[k],
-                              rings->width, rings->height);
-      break;
-    }
+    if (channel == (size_t)-1 || map.width != rings->width || map.height != rings->height)
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "the receiver map has no channel %s of %zu x %zu texels", names[k],
+                            rings->width, rings->height);
     abbe_rings_sum(rings, map.data + channel, map.channels, false, one);
     for (size_t i = 0; i < rings->count; i++) sum[i][k] = one[i];
   }
-  abbe_image_free(&map);
-  return result;
+  return ABBE_OK;
 }
 
 /* The last pass alone is k times the mean of k passes less k - 1 times that of k - 1. */

@@ -51,6 +51,7 @@ typedef struct abbe_sphere_quadrature abbe_sphere_quadrature;
 abbe_result abbe_sphere_quadrature_make(const abbe_sphere_setup *setup,
                                         abbe_sphere_quadrature **out, abbe_error *error);
 void abbe_sphere_quadrature_free(abbe_sphere_quadrature *quadrature);
+ABBE_HOLDS(abbe_sphere_quadrature)
 
 /* Flux in W on the plane within radius_m of the axis; infinity: on the whole plane
  * (infinite itself where `past` counts a beam). Relative error below 1e-9 of what falls on the

@@ -36,12 +36,12 @@ static abbe_result add_phase(abbe_known_run *run, float g, abbe_error *error) {
                            .reason = "single precision near the forward peak"};
   abbe_number_format(row.quantity, sizeof row.quantity,
                      "what is scattered with a mean cosine of %.2g goes somewhere", (double)g);
-  abbe_result result = abbe_known_add(run, row, error);
+  ABBE_TRY(abbe_known_add(run, row, error));
   row.exact = (double)g;
   row.traced = sum[1];
   abbe_number_format(row.quantity, sizeof row.quantity, "its mean cosine, where it is to be %.2g",
                      (double)g);
-  return result == ABBE_OK ? abbe_known_add(run, row, error) : result;
+  return abbe_known_add(run, row, error);
 }
 
 /* ---- a slab of mist ---- */

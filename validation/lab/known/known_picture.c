@@ -104,48 +104,41 @@ static abbe_result sum_so_far(const abbe_tracer *tracer, const abbe_rings *rings
                               float *buffer, double (*sum)[3], abbe_error *error) {
   static const char *const names[2] = {"Y", "caustic.Y"};
   double one[RINGS];
-  abbe_image picture = {0};
-  abbe_result result = abbe_tracer_picture(tracer, &picture, error);
-  for (int k = 0; k < 2 && result == ABBE_OK; k++) {
+  ABBE_OWNED(abbe_image, picture) = {0};
+  ABBE_TRY(abbe_tracer_picture(tracer, &picture, error));
+  for (int k = 0; k < 2; k++) {
     size_t at = abbe_image_find_channel(&picture, names[k]);
-    if (at == (size_t)-1) {
-      result =
-          abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the picture has no channel %s", names[k]);
-      break;
-    }
+    if (at == (size_t)-1)
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the picture has no channel %s",
+                            names[k]);
     for (size_t i = 0; i < (size_t)SIDE * SIDE; i++)
       buffer[i] = flux[i] * picture.data[i * picture.channels + at];
     abbe_rings_sum(rings, buffer, 1, false, one);
     for (int i = 0; i < RINGS; i++) sum[i][k] = one[i];
   }
-  abbe_image_free(&picture);
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result trace(const abbe_known_run *run, const abbe_scene *scene,
                          const abbe_trace_desc *desc, size_t passes, const abbe_rings *rings,
                          double (*sum)[3], double from, double to, abbe_error *error) {
   double mean[RINGS][3] = {{0}}, before[RINGS][3];
-  float *flux = calloc(2 * (size_t)SIDE * SIDE, sizeof *flux);
-  abbe_tracer *tracer = NULL;
-  abbe_result result = flux != NULL
-                           ? abbe_tracer_make(scene, desc, &tracer, error)
-                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a picture");
-  if (result == ABBE_OK) flux_of_pixels(rings, flux);
-  for (size_t p = 0; p < passes && result == ABBE_OK; p++) {
+  ABBE_FREED float *flux = calloc(2 * (size_t)SIDE * SIDE, sizeof *flux);
+  ABBE_HELD(abbe_tracer, tracer) = NULL;
+  ABBE_TRY(flux != NULL ? abbe_tracer_make(scene, desc, &tracer, error)
+                        : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a picture"));
+  flux_of_pixels(rings, flux);
+  for (size_t p = 0; p < passes; p++) {
     memcpy(before, mean, sizeof mean);
-    result = abbe_tracer_pass(tracer, NULL, error);
-    if (result == ABBE_OK)
-      result = sum_so_far(tracer, rings, flux, flux + (size_t)SIDE * SIDE, mean, error);
+    ABBE_TRY(abbe_tracer_pass(tracer, NULL, error));
+    ABBE_TRY(sum_so_far(tracer, rings, flux, flux + (size_t)SIDE * SIDE, mean, error));
     for (int i = 0; i < RINGS; i++)
       for (int k = 0; k < 2; k++)
         sum[p * RINGS + (size_t)i][k] = ((double)p + 1) * mean[i][k] - (double)p * before[i][k];
     double done = from + (to - from) * (double)(p + 1) / (double)passes;
-    if (result == ABBE_OK) result = abbe_known_progress(run, done, error);
+    ABBE_TRY(abbe_known_progress(run, done, error));
   }
-  abbe_tracer_free(tracer);
-  free(flux);
-  return result;
+  return ABBE_OK;
 }
 
 /* What a pane leaves of the radiance behind it, head on. */

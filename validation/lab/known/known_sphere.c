@@ -72,28 +72,26 @@ static abbe_result load(const setting *s, double outer, abbe_scene *scene, abbe_
 static abbe_result radius_of(const abbe_sphere_quadrature *q, double share, double *radius,
                              abbe_error *error) {
   double all = 0, flux = 0, low = 1e-6 * RADIUS, high = 1e3 * RADIUS;
-  abbe_result result = abbe_sphere_quadrature_enclosed(q, INFINITY, &all, error);
-  for (int step = 0; step < 40 && result == ABBE_OK; step++) {
+  ABBE_TRY(abbe_sphere_quadrature_enclosed(q, INFINITY, &all, error));
+  for (int step = 0; step < 40; step++) {
     *radius = sqrt(low * high);
-    result = abbe_sphere_quadrature_enclosed(q, *radius, &flux, error);
+    ABBE_TRY(abbe_sphere_quadrature_enclosed(q, *radius, &flux, error));
     if (flux < share * all)
       low = *radius;
     else
       high = *radius;
   }
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result edges_of(const setting *s, double n, double edge[RINGS + 1], abbe_error *error) {
   abbe_sphere_setup setup = setup_of(s, 3);
-  abbe_sphere_quadrature *q = NULL;
+  ABBE_HELD(abbe_sphere_quadrature, q) = NULL;
   setup.index = n;
-  abbe_result result = abbe_sphere_quadrature_make(&setup, &q, error);
+  ABBE_TRY(abbe_sphere_quadrature_make(&setup, &q, error));
   edge[0] = 0;
-  for (int i = 0; i < RINGS && result == ABBE_OK; i++)
-    result = radius_of(q, quantile[i], &edge[i + 1], error);
-  abbe_sphere_quadrature_free(q);
-  return result;
+  for (int i = 0; i < RINGS; i++) ABBE_TRY(radius_of(q, quantile[i], &edge[i + 1], error));
+  return ABBE_OK;
 }
 
 /* The light's own view of the outermost ring. */

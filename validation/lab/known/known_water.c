@@ -39,24 +39,23 @@ static abbe_result follow(abbe_known_stage *stage, double x, double lambda_nm, d
 static abbe_result add_rays(abbe_known_run *run, abbe_error *error) {
   enum { PLACES = 5 };
   abbe_wave_caustic w = {.amplitude = AMPLITUDE, .wavelength = WAVELENGTH, .depth = 0.25};
-  abbe_known_stage stage;
-  abbe_result result = abbe_known_stage_make(&stage, error, body, w.depth + 0.01, w.amplitude,
-                                             w.wavelength, -w.depth);
-  if (result == ABBE_OK) result = abbe_known_stage_n(&stage, ABBE_LINE_D_NM, &w.index, error);
-  for (int i = 0; i < PLACES && result == ABBE_OK; i++) {
+  ABBE_OWNED(abbe_known_stage, stage) = {0};
+  ABBE_TRY(abbe_known_stage_make(&stage, error, body, w.depth + 0.01, w.amplitude, w.wavelength,
+                                 -w.depth));
+  ABBE_TRY(abbe_known_stage_n(&stage, ABBE_LINE_D_NM, &w.index, error));
+  for (int i = 0; i < PLACES; i++) {
     const double x = WAVELENGTH * (i + 0.3) / (2 * PLACES);
     abbe_known_answer row = {.unit = "m",
                              .exact = abbe_wave_caustic_landing(&w, x, NULL),
                              .tolerance = 2e-6,
                              .reason = ray_reason};
-    result = follow(&stage, x, ABBE_LINE_D_NM, &row.traced, error);
+    ABBE_TRY(follow(&stage, x, ABBE_LINE_D_NM, &row.traced, error));
     abbe_number_format(row.quantity, sizeof row.quantity,
                        "a wave of 2 mm and 10 cm, 25 cm down: light %.4g mm off the crest lands",
                        1e3 * x);
-    if (result == ABBE_OK) result = abbe_known_add(run, row, error);
+    ABBE_TRY(abbe_known_add(run, row, error));
   }
-  abbe_known_stage_free(&stage);
-  return result;
+  return ABBE_OK;
 }
 
 /* The crossing depends on the squared distance from the crest; through three to none at all. */
@@ -64,27 +63,25 @@ static abbe_result add_focus(abbe_known_run *run, const char *line, double lambd
                              abbe_error *error) {
   static const double steps[3] = {4, 8, 12}, factor[3] = {1.5, -0.6, 0.1};
   abbe_wave_caustic w = {.amplitude = AMPLITUDE, .wavelength = WAVELENGTH, .depth = 0.25};
-  abbe_known_stage stage;
-  abbe_result result = abbe_known_stage_make(&stage, error, body, w.depth + 0.01, w.amplitude,
-                                             w.wavelength, -w.depth);
-  if (result == ABBE_OK) result = abbe_known_stage_n(&stage, lambda_nm, &w.index, error);
+  ABBE_OWNED(abbe_known_stage, stage) = {0};
+  ABBE_TRY(abbe_known_stage_make(&stage, error, body, w.depth + 0.01, w.amplitude, w.wavelength,
+                                 -w.depth));
+  ABBE_TRY(abbe_known_stage_n(&stage, lambda_nm, &w.index, error));
   abbe_known_answer row = {.unit = "m",
                            .exact = abbe_wave_caustic_focus(&w),
                            .reason = "1e-3 of it: rays that converge by 0.003 rad, known to 1e-6"};
   row.tolerance = 1e-3 * row.exact;
-  for (int i = 0; i < 3 && result == ABBE_OK; i++) {
+  for (int i = 0; i < 3; i++) {
     const double x = steps[i] * WAVELENGTH / 256;
     double at = 0;
-    result = follow(&stage, x, lambda_nm, &at, error);
+    ABBE_TRY(follow(&stage, x, lambda_nm, &at, error));
     const double crest = w.amplitude * (1 - cos(2 * ABBE_PI * x / w.wavelength));
     const double fell = w.depth + w.amplitude - crest;
     row.traced += factor[i] * (crest + fell * x / (x - at));
   }
   abbe_number_format(row.quantity, sizeof row.quantity,
                      "a wave of 2 mm and 10 cm: focus below its crest at the line %s", line);
-  if (result == ABBE_OK) result = abbe_known_add(run, row, error);
-  abbe_known_stage_free(&stage);
-  return result;
+  return abbe_known_add(run, row, error);
 }
 
 /* ---- what falls on the bottom ---- */

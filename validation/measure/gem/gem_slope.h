@@ -16,7 +16,6 @@
 
 #include "colorimetry/weights.h"
 #include "validation/measure/gem/gem_light.h"
-#include "validation/measure/gem/gem_number.h"
 
 enum { ABBE_GEM_SLOPE_REPEATS = 8, ABBE_GEM_SLOPE_MEETINGS = 64 };
 

@@ -75,9 +75,7 @@ static abbe_result resolve(const abbe_scene *scene, abbe_trace_desc *d, abbe_err
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "neither a picture nor a map is asked for: leave one of the two in");
   d->guides = d->guides && !d->no_picture;
-  if (d->layout != NULL) {
-    ABBE_TRY(abbe_map_layout_check(d->layout, error));
-  }
+  if (d->layout != NULL) ABBE_TRY(abbe_map_layout_check(d->layout, error));
   if (d->photons == 0) {
     d->photons = 1u << 20;
     if (!d->no_picture && 4 * pixels_of(d) > d->photons) d->photons = 4 * pixels_of(d);

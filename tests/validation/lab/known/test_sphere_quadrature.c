@@ -6,8 +6,6 @@
 #include "spectral/optics.h"
 #include "validation/lab/known/known_light.h"
 
-HOLDS(abbe_sphere_quadrature);
-
 static abbe_sphere_quadrature *make(const abbe_sphere_setup *setup) {
   abbe_sphere_quadrature *q = NULL;
   OK(abbe_sphere_quadrature_make(setup, &q, &error));
