@@ -2,7 +2,7 @@
 
 #include "base/file.h"
 
-#include "base/text.h"
+#include "base/foreign_text.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,6 +1,6 @@
 #include "gl/renderer_state.h"
 
-#include "gl/methods/methods.h"
+#include "gl/methods/transports/transports.h"
 #include "gl/scene/gpu_scene.h"
 #include "gl/scene/spectra/camera_bands.h"
 #include "scenes/geometry/digest.h"

@@ -1,4 +1,4 @@
-foreach(name error
+foreach(name error foreign_text
         number report
         text yaml yaml_edit)
   abbe_test(${name} cpu abbe_base)

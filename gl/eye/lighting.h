@@ -7,7 +7,7 @@
 #include "gl/caustics/spectral_map.h"
 #include "gl/light/light_layers.h"
 #include "gl/light/receiver_atlas.h"
-#include "gl/methods/methods.h"
+#include "gl/methods/transports/transports.h"
 #include "gl/scene/local_scene.h"
 #include "gl/scene/seen/seen_meshes.h"
 #include "gl/scene/shader_variant.h"

@@ -1,7 +1,7 @@
 #include "scenes/cuts/cut_file.h"
 
+#include "base/foreign_text.h"
 #include "base/number.h"
-#include "base/text.h"
 #include "scenes/cuts/cut.h"
 
 #include <ctype.h>

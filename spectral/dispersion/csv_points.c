@@ -1,8 +1,8 @@
 #include "spectral/dispersion/csv_points.h"
 
 #include "base/file.h"
+#include "base/foreign_text.h"
 #include "base/number.h"
-#include "base/text.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -45,7 +45,7 @@ typedef struct abbe_csv_points {
 
 void abbe_csv_points_free(abbe_csv_points *points);
 
-/* Reads size bytes of text (any encoding of base/text.h); name stands for the file in
+/* Reads size bytes of text (any encoding of base/foreign_text.h); name stands for the file in
  * messages, options may be NULL. A line that cannot be used is noted in report and passed over, and
  * so are, without options->repeats, points at a wavelength that was there before; in a light's file
  * these are ABBE_PARSE or ABBE_SCHEMA, with line and text. ABBE_PARSE where the unit is not clear;

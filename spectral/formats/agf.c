@@ -1,6 +1,7 @@
 #include "spectral/formats/material_import.h"
 
 #include "base/file.h"
+#include "base/foreign_text.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "spectral/dispersion/points.h"

@@ -1,8 +1,8 @@
 #include "spectral/formats/material_import.h"
 
 #include "base/file.h"
+#include "base/foreign_text.h"
 #include "base/number.h"
-#include "base/text.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/store/material_store.h"
 

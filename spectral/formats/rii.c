@@ -1,7 +1,7 @@
 #include "spectral/formats/material_import.h"
 
+#include "base/foreign_text.h"
 #include "base/number.h"
-#include "base/text.h"
 #include "base/yaml/yaml.h"
 #include "spectral/dispersion/points.h"
 #include "spectral/materials/absorption.h"

@@ -1,7 +1,7 @@
 #include "spectral/formats/material_write.h"
 
+#include "base/foreign_text.h"
 #include "base/number.h"
-#include "base/text.h"
 #include "base/yaml/yaml_edit_text.h"
 #include "spectral/materials/absorption.h"
 

@@ -1,7 +1,7 @@
 /* Wavefront OBJ: polygons by points, texture coordinates and normals; materials by their names. */
 #include "base/file.h"
+#include "base/foreign_text.h"
 #include "base/number.h"
-#include "base/text.h"
 #include "scenes/import/mesh/mesh_reading.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* Balls: the focus of a ball lens, and the rainbows of a drop. */
 #include "validation/lab/known/forms/closed_form.h"
-#include "validation/lab/known/known_answers.h"
+#include "validation/lab/known/known_light.h"
 
 #include "base/number.h"
 #include "spectral/dispersion/dispersion.h"

@@ -1,5 +1,5 @@
 /* A block of calcite under rays at the line d: where its two rays go, and what each of them has. */
-#include "validation/lab/known/known_answers.h"
+#include "validation/lab/known/known_light.h"
 
 #include "base/number.h"
 #include "spectral/dispersion/dispersion.h"

@@ -1,7 +1,7 @@
 /* Derivatives of single rays through slabs, a prism and a ball and off mirrors, by numbers of the
  * scene. */
 #include "validation/lab/known/forms/closed_form.h"
-#include "validation/lab/known/known_answers.h"
+#include "validation/lab/known/known_light.h"
 
 #include "base/number.h"
 #include "spectral/dispersion/dispersion.h"

@@ -1,6 +1,6 @@
 /* Flat faces: the shift of a slab, Fresnel's shares, the critical angle, films. */
 #include "validation/lab/known/forms/closed_form.h"
-#include "validation/lab/known/known_answers.h"
+#include "validation/lab/known/known_light.h"
 
 #include "base/maths.h"
 #include "base/number.h"

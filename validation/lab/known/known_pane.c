@@ -3,7 +3,6 @@
 #include "base/number.h"
 #include "spectral/dispersion/dispersion.h"
 #include "validation/lab/known/forms/closed_form.h"
-#include "validation/lab/known/known_answers.h"
 #include "validation/lab/known/known_light.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* Prisms: least deviation, and the spectrum of a slit. */
 #include "validation/lab/known/forms/closed_form.h"
-#include "validation/lab/known/known_answers.h"
+#include "validation/lab/known/known_light.h"
 
 #include "base/number.h"
 #include "spectral/dispersion/dispersion.h"

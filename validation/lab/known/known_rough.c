@@ -2,7 +2,7 @@
  * hardly rough meets a smooth one. */
 #include "base/number.h"
 #include "validation/lab/known/forms/closed_form.h"
-#include "validation/lab/known/known_answers.h"
+#include "validation/lab/known/known_light.h"
 #include "validation/trace/transport/double_refraction.h"
 
 #include <math.h>
