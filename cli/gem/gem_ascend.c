@@ -70,9 +70,7 @@ static abbe_result print_json(const abbe_gem_stone_input *s, const char *measure
     add_number(tier, "by_distance", a->slope[2 * t + 1]);
     cJSON_AddItemToArray(tiers, tier);
   }
-  const abbe_result result = abbe_command_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, true, error);
 }
 
 abbe_result abbe_gem_optimise_ascend(abbe_gem_stone_input *s, const char *measure,

@@ -1,7 +1,7 @@
 /* The table of known answers: every row passes, and a wrong one would not. */
 #include "tests/check.h"
 
-#include "validation/lab/known/known_answers.h"
+#include "validation/lab/known/known_light.h"
 
 static abbe_known_answers make(const char *only) {
   abbe_known_answers answers;
