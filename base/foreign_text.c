@@ -108,6 +108,9 @@ enum { REPLACEMENT = ABBE_UTF8_REPLACEMENT };
 static bool is_utf8(const unsigned char *c, size_t size) {
   uint32_t code;
   for (size_t i = 0, step; i < size; i += step) {
+    uint64_t eight = 0; /* letters of ASCII are taken together */
+    if (size - i >= sizeof eight) memcpy(&eight, c + i, step = sizeof eight);
+    if (size - i >= sizeof eight && (eight & 0x8080808080808080) == 0) continue;
     step = abbe_utf8_read(c + i, size - i, &code);
     if (step == 0) return false;
   }
@@ -178,6 +181,13 @@ static bool unwanted(uint32_t code) {
          code == 0xffff;
 }
 
+/* How many bytes from c on are letters of ASCII, tabs and line ends, which stay as they are. */
+static size_t plain(const unsigned char *c, size_t left) {
+  size_t n = 0;
+  while (n < left && ((c[n] >= 0x20 && c[n] < 0x7f) || c[n] == '\n' || c[n] == '\t')) n++;
+  return n;
+}
+
 abbe_result abbe_encoding_decode(const char *bytes, size_t size, char **text, size_t *length,
                                  abbe_error *error) {
   const unsigned char *c = (const unsigned char *)bytes;
@@ -187,6 +197,11 @@ abbe_result abbe_encoding_decode(const char *bytes, size_t size, char **text, si
   form from = detect(c, size, &i);
   bool after_return = false;
   while (i < size) {
+    const size_t run = from == UTF8 && !after_return ? plain(c + i, size - i) : 0;
+    memcpy(out + used, c + i, run);
+    i += run;
+    used += run;
+    if (i == size) break;
     uint32_t code = REPLACEMENT;
     i += take(c + i, size - i, from, &code);
     bool skip = after_return && code == '\n';
