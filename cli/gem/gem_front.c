@@ -134,9 +134,7 @@ static abbe_result print_json(const front *f, bool least, abbe_error *error) {
     cJSON_AddBoolToObject(one, "front", is_best(f, least, i));
     cJSON_AddItemToArray(list, one);
   }
-  const abbe_result result = abbe_command_print_json(root, error);
-  cJSON_Delete(root);
-  return result;
+  return abbe_command_print_json(root, true, error);
 }
 
 abbe_result abbe_gem_optimise_front(abbe_gem_stone_input *s, const char *measure,
