@@ -8,7 +8,6 @@
 #include "colorimetry/rgb_space.h"
 #include "colorimetry/screen/screen_png.h"
 #include "colorimetry/spectral_picture/spectral_channels.h"
-#include "gl/device/context.h"
 #include "scenes/scene.h"
 #include "scenes/view/map_layout.h"
 
@@ -130,13 +129,5 @@ extern const struct argp abbe_map_options_argp;
  * With `sized` like's map must be square, for its side is taken. */
 abbe_result abbe_map_options_resolve(abbe_map_options *options, const abbe_scene *scene, bool sized,
                                      abbe_error *error);
-
-/* The context that a command draws with, and a word where a GPU that is there is not
- * taken for it. */
-
-/* abbe_context_make. Where AUTO finds a GPU that does not suffice, a note on stderr says why, in
- * one line, once in a process and not at all where it is to be quiet. Any thread may call it. */
-abbe_result abbe_own_context_make(abbe_context_backend backend, bool quiet, abbe_context **out,
-                                  abbe_error *error);
 
 #endif

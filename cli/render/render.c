@@ -1,6 +1,7 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
+#include "cli/options/own_context.h"
 #include "cli/options/picture_options.h"
 #include "cli/options/scene_input.h"
 #include "cli/render/render_request.h"

@@ -3,7 +3,7 @@
  * behind. */
 #include "tests/check.h"
 
-#include "cli/options/picture_options.h"
+#include "cli/options/own_context.h"
 #include "gl/device/context.h"
 #include "gl/device/context_backend.h"
 #include "gl/renderer.h"

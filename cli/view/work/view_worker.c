@@ -2,7 +2,7 @@
 
 #include "base/clock.h"
 #include "base/thread/watch.h"
-#include "cli/options/picture_options.h"
+#include "cli/options/own_context.h"
 #include "cli/view/picture/view_feed.h"
 #include "cli/view/work/view_scene.h"
 #include "gl/renderer.h"
