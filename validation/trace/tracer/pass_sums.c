@@ -50,8 +50,12 @@ void abbe_pass_counts_set(abbe_tracer *t, const abbe_pass_counts *c) {
 
 bool abbe_pass_counts_hold(const abbe_pass_counts *c) {
   const uint64_t most = ABBE_WHOLE_SUM_MOST_PASSES;
-  return c->whole <= most && c->step >= 1 && c->step <= most && c->first <= c->end &&
-         c->first <= most && c->end < most + c->step && (c->end - c->first) % c->step == 0;
+  if (!(c->whole <= most && c->step >= 1 && c->step <= most && c->first <= c->end &&
+        c->first <= most && c->end < most + c->step && (c->end - c->first) % c->step == 0))
+    return false;
+  const uint64_t counted = abbe_pass_counts_passes(c) * ABBE_PASS_COUNTS_MOST;
+  return c->photons <= counted && c->light_rays <= counted && c->eye_rays <= counted &&
+         c->cuts <= counted;
 }
 
 size_t abbe_pass_counts_passes(const abbe_pass_counts *c) {

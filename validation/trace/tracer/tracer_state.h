@@ -242,6 +242,8 @@ typedef struct abbe_pass_counts {
   uint64_t whole;            /* passes that there are to be, of all parts; 0: not stated */
   uint64_t photons, light_rays, eye_rays, cuts;
 } abbe_pass_counts;
+/* Photons, rays and cuts of a pass, so that those of all passes there can be do not overflow. */
+#define ABBE_PASS_COUNTS_MOST ((uint64_t)1 << 43)
 
 /* Ledger; sums and squares of the picture; guides; sums and squares of the map. */
 enum { ABBE_PASS_SUMS_PARTS = 6 };
@@ -255,7 +257,8 @@ void abbe_pass_sums_spans(abbe_tracer *tracer, abbe_sum_span out[ABBE_PASS_SUMS_
 void abbe_pass_counts_get(const abbe_tracer *tracer, abbe_pass_counts *out);
 void abbe_pass_counts_set(abbe_tracer *tracer, const abbe_pass_counts *counts);
 
-/* Whether there are such passes: from 0 on, ascending, no more than there can be. */
+/* Whether there are such passes: from 0 on, ascending, no more than there can be, of no more
+ * photons, rays and cuts. */
 bool abbe_pass_counts_hold(const abbe_pass_counts *counts);
 size_t abbe_pass_counts_passes(const abbe_pass_counts *counts);
 
