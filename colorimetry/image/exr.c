@@ -21,6 +21,7 @@ static abbe_exr_stream *stream_of(exr_const_context_t context) {
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message) {
   (void)code;
   abbe_exr_stream *s = stream_of(context);
+#pragma omp critical(abbe_exr_message)
   if (s != NULL && s->message[0] == '\0')
     snprintf(s->message, sizeof s->message, "%s", message == NULL ? "" : message);
 }
@@ -54,31 +55,23 @@ static abbe_image_window window_of(exr_attr_box2i_t box) {
   return (abbe_image_window){box.min.x, box.min.y, box.max.x, box.max.y};
 }
 
-/* A part whose chunks are read into the picture's channels from `first` on. */
-typedef struct source {
-  abbe_exr_layout layout;
-  exr_decode_pipeline_t pipe;
-  exr_result_t (*decompress)(exr_decode_pipeline_t *pipe); /* the library's; NULL: nothing packs */
-  double unit;
-  int first;
-} source;
-
-/* A file whose chunks are read; `next` and what follows are of scan lines alone: the chunk that
- * comes next, `step` chunks after the one before, of all in a pass. In the first pass lines that
- * are not there yet are as the one above them. */
+/* A file whose chunks are read; `first` and what follows are of scan lines alone: the first chunk
+ * that is shown, how many are, and of these the one that comes next, `step` chunks after the one
+ * before, of all in a pass. In the first pass lines that are not there yet are as the one above
+ * them. */
 struct abbe_exr_reader {
   abbe_exr_stream stream;
   char *path;
   FILE *file;
   exr_context_t context;
-  source part[2]; /* the picture's, and what is data beside it */
+  abbe_exr_source part[2]; /* the picture's, and what is data beside it */
   size_t parts;
-  int64_t next, step, read, chunks;
+  int64_t first, chunks, next, step, read;
   bool again; /* not the first pass */
 };
 
 static int channels_of(const abbe_exr_reader *r) {
-  const source *last = &r->part[r->parts - 1];
+  const abbe_exr_source *last = &r->part[r->parts - 1];
   return last->first + last->layout.channels->num_channels;
 }
 
@@ -104,102 +97,19 @@ static abbe_result make_image(abbe_exr_reader *r, const abbe_exr_layout *l, abbe
                            : result;
 }
 
-/* Where the chunk that is decoded goes: its first sample belongs to the picture's pixel (x, y),
- * which may lie outside. */
-typedef struct place {
-  const source *part;
+/* The chunks of a layout that go into an image, or into sums of three. */
+typedef struct job {
+  const abbe_exr_reader *reader;
+  const abbe_exr_layout *layout;
   const abbe_image *image;
-  int64_t x, y;
-} place;
+  abbe_exr_sums *sums; /* NULL: the channels themselves */
+  bool repeat;         /* a chunk's last line stands for those up to the next */
+  int64_t count, step;
+  int level, across;      /* of tiles: the level, and how many stand side by side */
+  uint32_t width, height; /* of a tile */
+} job;
 
-static uint32_t little_endian(const uint8_t *bytes, int count) {
-  uint32_t value = 0;
-  for (int i = count - 1; i >= 0; i--) value = value << 8 | bytes[i];
-  return value;
-}
-
-static float float_of(uint32_t bits) {
-  float value;
-  memcpy(&value, &bits, sizeof value);
-  return value;
-}
-
-/* IEEE 754's binary16: the exponent's bias is 112 less, and its greatest stands for infinity. */
-static float half_of(uint32_t bits) {
-  float value = float_of((bits & 0x7fff) << 13) * 0x1p112f;
-  if (value >= 65536) value = float_of(0x7f800000 | (bits & 0x3ff) << 13);
-  return bits & 0x8000 ? -value : value;
-}
-
-static float sample_of(const uint8_t *bytes, int type) {
-  if (type == EXR_PIXEL_HALF) return half_of(little_endian(bytes, 2));
-  uint32_t bits = little_endian(bytes, 4);
-  return type == EXR_PIXEL_FLOAT ? float_of(bits) : (float)bits;
-}
-
-/* A chunk's lines, each channel after channel, into those pixels of the picture that they cover.
- * The library's own unpackers are not used: 3.1's for four halves that become neighbouring floats
- * lays them down in reverse. */
-static exr_result_t unpack(exr_decode_pipeline_t *pipe) {
-  const place *to = pipe->decoding_user_data;
-  const abbe_image *image = to->image;
-  const int64_t width = (int64_t)image->width, chunk_width = pipe->chunk.width;
-  const int64_t from = to->x < 0 ? -to->x : 0;
-  const int64_t past = to->x + chunk_width > width ? width - to->x : chunk_width;
-  const uint8_t *line = pipe->unpacked_buffer;
-  for (int64_t y = to->y; y < to->y + pipe->chunk.height; y++)
-    for (int c = 0; c < pipe->channel_count; c++) {
-      const int bytes = pipe->channels[c].bytes_per_element, type = pipe->channels[c].data_type;
-      const bool shown = y >= 0 && y < (int64_t)image->height;
-      for (int64_t x = from; shown && x < past; x++)
-        image->data[(y * width + to->x + x) * (int64_t)image->channels + to->part->first + c] =
-            (float)(to->part->unit * (double)sample_of(line + x * bytes, type));
-      line += chunk_width * bytes;
-    }
-  return EXR_ERR_SUCCESS;
-}
-
-/* What no codec made smaller is stored as it is; 3.1 forgets that for B44. */
-static exr_result_t decompress(exr_decode_pipeline_t *pipe) {
-  const place *to = pipe->decoding_user_data;
-  if (pipe->chunk.packed_size == pipe->chunk.unpacked_size) return EXR_ERR_SUCCESS;
-  return to->part->decompress == NULL ? EXR_ERR_CORRUPT_CHUNK : to->part->decompress(pipe);
-}
-
-static exr_result_t begin(exr_context_t context, source *from, const exr_chunk_info_t *chunk) {
-  const int part = from->layout.part;
-  exr_result_t rv = exr_decoding_initialize(context, part, chunk, &from->pipe);
-  if (rv == 0) rv = exr_decoding_choose_default_routines(context, part, &from->pipe);
-  from->decompress = from->pipe.decompress_fn;
-  from->pipe.decompress_fn = decompress;
-  from->pipe.unpack_and_convert_fn = unpack;
-  return rv;
-}
-
-static bool is_whole(const exr_decode_pipeline_t *pipe) {
-  uint64_t pixel = 0;
-  for (int c = 0; c < pipe->channel_count; c++)
-    pixel += (uint64_t)pipe->channels[c].bytes_per_element;
-  return pixel * (uint64_t)pipe->chunk.width * (uint64_t)pipe->chunk.height ==
-         pipe->chunk.unpacked_size;
-}
-
-/* Decodes one chunk of at most width x height pixels. */
-static exr_result_t read_chunk(exr_context_t context, source *from, const exr_chunk_info_t *chunk,
-                               int64_t width, int64_t height, place *to) {
-  if (chunk->width < 1 || chunk->height < 1 || chunk->width > width || chunk->height > height)
-    return EXR_ERR_CORRUPT_CHUNK;
-  exr_result_t rv = from->pipe.context == NULL
-                        ? begin(context, from, chunk)
-                        : exr_decoding_update(context, from->layout.part, chunk, &from->pipe);
-  to->part = from;
-  from->pipe.decoding_user_data = to;
-  if (rv == 0 && !is_whole(&from->pipe)) rv = EXR_ERR_CORRUPT_CHUNK;
-  if (rv == 0) rv = exr_decoding_run(context, from->layout.part, &from->pipe);
-  return abbe_exr_starved() ? EXR_ERR_OUT_OF_MEMORY : rv;
-}
-
-static bool is_shown(const place *to, int64_t width, int64_t height) {
+static bool is_shown(const abbe_exr_place *to, int64_t width, int64_t height) {
   return to->x < (int64_t)to->image->width && to->x + width > 0 &&
          to->y < (int64_t)to->image->height && to->y + height > 0;
 }
@@ -211,64 +121,123 @@ static void repeat_line(const abbe_image *image, int64_t line, int64_t past) {
     memcpy(image->data + (size_t)y * row, image->data + (size_t)line * row, row * sizeof(float));
 }
 
-/* Chunks of which nothing is shown are not decoded. */
-static exr_result_t read_lines(abbe_exr_reader *r, int64_t chunk, const abbe_image *image) {
-  const abbe_exr_layout *l = &r->part[0].layout;
+static abbe_exr_place place_of(const job *j, int64_t x, int64_t y) {
+  return (abbe_exr_place){.image = j->image,
+                          .sums = j->sums,
+                          .x = (int64_t)j->layout->data.min.x - j->layout->display.min.x + x,
+                          .y = (int64_t)j->layout->data.min.y - j->layout->display.min.y + y};
+}
+
+/* Whether some channel of the part is wanted. */
+static bool is_wanted(const abbe_exr_sums *sums, const abbe_exr_source *part) {
+  bool wanted = sums == NULL;
+  for (int c = 0; !wanted && c < part->layout.channels->num_channels; c++)
+    wanted = sums->weight[part->first + c] != NULL;
+  return wanted;
+}
+
+/* The chunk of all that are shown. */
+static exr_result_t read_lines(const job *j, abbe_exr_source *part, int64_t chunk) {
+  const abbe_exr_layout *l = j->layout;
+  exr_context_t context = j->reader->context;
   int32_t lines = 0;
   const int64_t width = abbe_exr_width(l->data), height = abbe_exr_height(l->data);
-  const int64_t dx = (int64_t)l->data.min.x - l->display.min.x;
-  const int64_t dy = (int64_t)l->data.min.y - l->display.min.y;
-  exr_result_t rv = exr_get_scanlines_per_chunk(r->context, l->part, &lines);
-  if (rv != 0 || lines < 1) return rv != 0 ? rv : EXR_ERR_CORRUPT_CHUNK;
-  const int64_t y = chunk * lines;
-  r->chunks = (height + lines - 1) / lines;
-  place to = {.image = image, .x = dx, .y = dy + y};
-  if (!is_shown(&to, width, lines)) return 0;
-  for (size_t p = 0; p < r->parts && rv == 0; p++) {
+  exr_result_t rv = exr_get_scanlines_per_chunk(context, l->part, &lines);
+  const int64_t y = (j->reader->first + chunk) * lines;
+  const abbe_exr_place to = place_of(j, 0, y);
+  for (size_t p = 0; p < j->reader->parts && rv == 0; p++) {
     exr_chunk_info_t info = {0};
-    rv = exr_read_scanline_chunk_info(r->context, r->part[p].layout.part, (int)(l->data.min.y + y),
-                                      &info);
-    if (rv == 0) rv = read_chunk(r->context, &r->part[p], &info, width, height - y, &to);
+    if (!is_wanted(j->sums, &part[p])) continue;
+    rv =
+        exr_read_scanline_chunk_info(context, part[p].layout.part, (int)(l->data.min.y + y), &info);
+    if (rv == 0) rv = abbe_exr_source_read(context, &part[p], &info, width, height - y, &to);
   }
-  const int64_t past = y + r->step * lines < height ? y + r->step * lines : height;
-  if (rv == 0 && !r->again) repeat_line(image, dy + y + lines - 1, dy + past);
+  const int64_t past = y + j->step * lines < height ? y + j->step * lines : height;
+  if (rv == 0 && j->repeat) repeat_line(j->image, to.y + lines - 1, to.y - y + past);
   return rv;
 }
 
-/* The next chunk; of what is there each further pass reads those in the middle between. */
-static exr_result_t read_next(abbe_exr_reader *r, const abbe_image *image) {
-  const exr_result_t rv = read_lines(r, r->next, image);
-  r->read++;
+static exr_result_t read_tile(const job *j, abbe_exr_source *part, int64_t tile) {
+  const abbe_exr_layout *l = j->layout;
+  exr_chunk_info_t chunk = {0};
+  const int64_t column = tile % j->across, row = tile / j->across;
+  const int64_t x = column * j->width, y = row * j->height;
+  const abbe_exr_place to = place_of(j, x, y);
+  if (!is_shown(&to, j->width, j->height)) return EXR_ERR_SUCCESS;
+  const exr_result_t rv = exr_read_tile_chunk_info(j->reader->context, l->part, (int)column,
+                                                   (int)row, j->level, j->level, &chunk);
+  return rv != 0
+             ? rv
+             : abbe_exr_source_read(j->reader->context, part, &chunk, abbe_exr_width(l->data) - x,
+                                    abbe_exr_height(l->data) - y, &to);
+}
+
+/* By several threads; which of several broken chunks is complained of is left open. */
+static exr_result_t run(const job *j) {
+  const abbe_exr_reader *r = j->reader;
+  const int64_t numbers = j->count * j->step > 0
+                              ? abbe_exr_width(r->part[0].layout.data) *
+                                    abbe_exr_height(r->part[0].layout.data) * channels_of(r)
+                              : 0;
+  exr_result_t failed = EXR_ERR_SUCCESS;
+#pragma omp parallel if (numbers / (j->step > 0 ? j->step : 1) > 1 << 20)
+  {
+    abbe_exr_source own[2] = {r->part[0], r->part[1]};
+#pragma omp for schedule(dynamic)
+    for (int64_t i = 0; i < j->count; i++) {
+      exr_result_t rv;
+#pragma omp atomic read
+      rv = failed;
+      if (rv != 0) continue;
+      rv = j->layout->storage == EXR_STORAGE_TILED ? read_tile(j, own, i)
+                                                   : read_lines(j, own, i * j->step);
+      if (rv == 0) continue;
+#pragma omp atomic write
+      failed = rv;
+    }
+    for (size_t p = 0; p < r->parts; p++) abbe_exr_source_free(r->context, &own[p]);
+  }
+  return failed;
+}
+
+static exr_result_t run_tiles(job *j) {
+  exr_tile_level_mode_t levels;
+  exr_tile_round_mode_t rounding;
+  const exr_result_t rv = exr_get_tile_descriptor(j->reader->context, j->layout->part, &j->width,
+                                                  &j->height, &levels, &rounding);
+  if (rv != 0) return rv;
+  if (j->width < 1 || j->height < 1) return EXR_ERR_CORRUPT_CHUNK;
+  j->step = 1;
+  j->across = (int)((abbe_exr_width(j->layout->data) + j->width - 1) / j->width);
+  j->count = j->across * ((abbe_exr_height(j->layout->data) + j->height - 1) / j->height);
+  return run(j);
+}
+
+/* The chunks of lines that are shown. */
+static exr_result_t find_lines(abbe_exr_reader *r) {
+  const abbe_exr_layout *l = &r->part[0].layout;
+  int32_t lines = 0;
+  const exr_result_t rv = exr_get_scanlines_per_chunk(r->context, l->part, &lines);
+  if (rv != 0 || lines < 1) return rv != 0 ? rv : EXR_ERR_CORRUPT_CHUNK;
+  const int64_t above = (int64_t)l->display.min.y - l->data.min.y;
+  const int64_t below = (int64_t)l->data.max.y - l->display.max.y;
+  const int64_t top = above > 0 ? above : 0;
+  const int64_t last = abbe_exr_height(l->data) - 1 - (below > 0 ? below : 0);
+  r->first = top / lines;
+  r->chunks = last / lines - r->first + 1;
+  if (last < top || l->data.max.x < l->display.min.x || l->data.min.x > l->display.max.x)
+    r->chunks = 0;
+  return EXR_ERR_SUCCESS;
+}
+
+/* Of what is there each further pass reads the chunks in the middle between. */
+static void advance(abbe_exr_reader *r) {
   r->next += r->again ? 2 * r->step : r->step;
   while (r->next >= r->chunks && r->step > 1) {
     r->again = true;
     r->step /= 2;
     r->next = r->step;
   }
-  return rv;
-}
-
-static exr_result_t read_tiles(abbe_exr_reader *r, const abbe_exr_layout *l, int level,
-                               const abbe_image *image) {
-  exr_context_t context = r->context;
-  uint32_t w = 0, h = 0;
-  exr_tile_level_mode_t levels;
-  exr_tile_round_mode_t rounding;
-  const int64_t width = abbe_exr_width(l->data), height = abbe_exr_height(l->data);
-  place to = {.image = image};
-  exr_result_t rv = exr_get_tile_descriptor(context, l->part, &w, &h, &levels, &rounding);
-  if (rv == 0 && (w < 1 || h < 1)) return EXR_ERR_CORRUPT_CHUNK;
-  for (int64_t y = 0; rv == 0 && y < height; y += h)
-    for (int64_t x = 0; rv == 0 && x < width; x += w) {
-      exr_chunk_info_t chunk = {0};
-      to.x = (int64_t)l->data.min.x - l->display.min.x + x;
-      to.y = (int64_t)l->data.min.y - l->display.min.y + y;
-      if (!is_shown(&to, w, h)) continue;
-      rv = exr_read_tile_chunk_info(context, l->part, (int)(x / w), (int)(y / h), level, level,
-                                    &chunk);
-      if (rv == 0) rv = read_chunk(context, &r->part[0], &chunk, width - x, height - y, &to);
-    }
-  return rv;
 }
 
 static size_t count_levels(exr_context_t context, const abbe_exr_layout *l) {
@@ -375,8 +344,7 @@ abbe_result abbe_exr_open(const char *path, abbe_exr_reader **out, abbe_error *e
 
 void abbe_exr_close(abbe_exr_reader *r) {
   if (r == NULL) return;
-  for (int p = 0; p < 2 && r->context != NULL; p++)
-    exr_decoding_destroy(r->context, &r->part[p].pipe);
+  for (int p = 0; p < 2 && r->context != NULL; p++) abbe_exr_source_free(r->context, &r->part[p]);
   if (r->context != NULL) exr_finish(&r->context);
   if (r->file != NULL) fclose(r->file);
   free(r->path);
@@ -413,33 +381,70 @@ abbe_result abbe_exr_read_level(abbe_exr_reader *r, size_t level, const size_t w
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: it has no levels", r->path);
   ABBE_TRY(choose_level(r, level, window, &l, error));
   ABBE_TRY(make(r, &l, out, error));
-  return finish(r, read_tiles(r, &l, (int)level, out), out, error);
+  job j = {.reader = r, .layout = &l, .image = out, .level = (int)level};
+  return finish(r, run_tiles(&j), out, error);
+}
+
+/* The first pass of lines, every r->step-th chunk; or all tiles. */
+static exr_result_t read_pass(abbe_exr_reader *r, const abbe_image *image, abbe_exr_sums *sums) {
+  job j = {.reader = r, .layout = &r->part[0].layout, .image = image, .sums = sums, .repeat = true};
+  r->first = r->chunks = r->next = r->read = 0;
+  r->again = false;
+  if (j.layout->storage == EXR_STORAGE_TILED) return run_tiles(&j);
+  exr_result_t rv = find_lines(r);
+  j.step = r->step;
+  j.count = (r->chunks + r->step - 1) / r->step;
+  if (rv == 0) rv = run(&j);
+  r->read = j.count;
+  r->next = (j.count - 1) * r->step;
+  advance(r);
+  return rv;
 }
 
 abbe_result abbe_exr_read_first(abbe_exr_reader *r, size_t most, abbe_image *out,
                                 abbe_error *error) {
-  const abbe_exr_layout *l = &r->part[0].layout;
-  exr_result_t rv = 0;
-  ABBE_TRY(make(r, l, out, error));
-  r->next = r->read = 0;
-  r->again = false;
+  ABBE_TRY(make(r, &r->part[0].layout, out, error));
   for (r->step = 1; out->width * out->height / (size_t)r->step > most / out->channels;)
     r->step *= 2;
-  if (l->storage == EXR_STORAGE_TILED) {
-    rv = read_tiles(r, l, 0, out);
-  } else {
-    do rv = read_next(r, out);
-    while (rv == 0 && !r->again && r->next < r->chunks);
-  }
-  return finish(r, rv, out, error);
+  return finish(r, read_pass(r, out, NULL), out, error);
 }
 
 abbe_result abbe_exr_read_on(abbe_exr_reader *r, double seconds, abbe_image *image, double *share,
                              abbe_error *error) {
   const double until = abbe_clock_seconds() + seconds;
+  const job j = {.reader = r, .layout = &r->part[0].layout, .image = image};
   exr_result_t rv = 0;
-  while (rv == 0 && r->read < r->chunks && abbe_clock_seconds() < until) rv = read_next(r, image);
+  while (rv == 0 && r->read < r->chunks && abbe_clock_seconds() < until) {
+    rv = read_lines(&j, r->part, r->next);
+    r->read++;
+    advance(r);
+  }
   *share = r->read < r->chunks ? (double)r->read / (double)r->chunks : 1;
+  return rv == 0 ? ABBE_OK : abbe_exr_fail(&r->stream, rv, error);
+}
+
+abbe_result abbe_exr_read_header(abbe_exr_reader *r, abbe_image *out, abbe_error *error) {
+  ABBE_TRY(make(r, &r->part[0].layout, out, error));
+  free(out->data);
+  out->data = NULL;
+  return ABBE_OK;
+}
+
+abbe_result abbe_exr_read_sums(abbe_exr_reader *r, size_t count, const size_t *channel,
+                               const double (*weight)[3], abbe_image *out, abbe_image_odd *odd,
+                               abbe_error *error) {
+  abbe_exr_sums sums = {0};
+  abbe_image three = *out;
+  float *data = calloc(out->width * out->height, 3 * sizeof *data);
+  if (data == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", r->path);
+  for (size_t i = 0; i < count; i++) sums.weight[channel[i]] = weight[i];
+  three.data = data;
+  r->step = 1;
+  const exr_result_t rv = read_pass(r, &three, &sums);
+  for (size_t p = 0; p < out->width * out->height; p++)
+    memcpy(out->data + p * out->channels, data + 3 * p, 3 * sizeof *data);
+  free(data);
+  *odd = sums.odd;
   return rv == 0 ? ABBE_OK : abbe_exr_fail(&r->stream, rv, error);
 }
 

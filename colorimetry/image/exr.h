@@ -61,6 +61,16 @@ void abbe_exr_find_levels(const abbe_exr_reader *reader, abbe_exr_levels *out);
 abbe_result abbe_exr_read_level(abbe_exr_reader *reader, size_t level, const size_t window[4],
                                 abbe_image *out, abbe_error *error);
 
+/* The picture as abbe_exr_read has it without its pixels: data is NULL. Errors of abbe_exr_read. */
+abbe_result abbe_exr_read_header(abbe_exr_reader *reader, abbe_image *out, abbe_error *error);
+
+/* The first three channels of out, a picture of the file's size, become the sums of the file's
+ * channels channel[count] times weight[count][3]; the others stay. *odd: pixels of which a channel
+ * that counts is infinite or NaN, whose sums are so too. Errors of abbe_exr_read. */
+abbe_result abbe_exr_read_sums(abbe_exr_reader *reader, size_t count, const size_t *channel,
+                               const double (*weight)[3], abbe_image *out, abbe_image_odd *odd,
+                               abbe_error *error);
+
 /* The picture as abbe_exr_read has it; but of scan lines with more than so many numbers every n-th
  * chunk alone, about so many numbers, each line between as the one above it. */
 abbe_result abbe_exr_read_first(abbe_exr_reader *reader, size_t most, abbe_image *out,

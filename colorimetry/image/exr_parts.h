@@ -36,6 +36,40 @@ typedef struct abbe_exr_layout {
   const exr_attr_chlist_t *channels;
 } abbe_exr_layout;
 
+/* A part whose chunks are read into the picture's channels from `first` on; by one thread. Freed by
+ * abbe_exr_source_free. */
+typedef struct abbe_exr_source {
+  abbe_exr_layout layout;
+  double unit;
+  int first;
+  exr_decode_pipeline_t pipe;
+  exr_result_t (*decompress)(exr_decode_pipeline_t *pipe); /* the library's; NULL: nothing packs */
+  void *inflater;
+  uint8_t *differences; /* [bytes] what ZIP packs */
+  size_t bytes;
+} abbe_exr_source;
+
+/* Three sums of channels in the place of a picture's channels. */
+typedef struct abbe_exr_sums {
+  const double *weight[ABBE_IMAGE_MAX_CHANNELS]; /* [3] of each; NULL: it does not count */
+  abbe_image_odd odd;                            /* of those that count; threads add to it */
+} abbe_exr_sums;
+
+/* Where a chunk that is decoded goes: its first sample belongs to the picture's pixel (x, y), which
+ * may lie outside. */
+typedef struct abbe_exr_place {
+  abbe_exr_source *part;
+  const abbe_image *image; /* of three channels where there are sums, which are added to them */
+  abbe_exr_sums *sums;     /* NULL: the channels themselves */
+  int64_t x, y;
+} abbe_exr_place;
+
+/* Decodes one chunk of at most width x height pixels to `at`, whose part is filled in. */
+exr_result_t abbe_exr_source_read(exr_context_t context, abbe_exr_source *from,
+                                  const exr_chunk_info_t *chunk, int64_t width, int64_t height,
+                                  const abbe_exr_place *at);
+void abbe_exr_source_free(exr_context_t context, abbe_exr_source *source);
+
 /* Has the library allocate so that a thread knows whether it lacked memory: it does not always
  * tell, and goes on with other pixels. Asking forgets. */
 void abbe_exr_allocate_by(exr_context_initializer_t *setup);

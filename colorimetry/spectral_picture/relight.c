@@ -1,5 +1,6 @@
 #include "colorimetry/spectral_picture/relight.h"
 
+#include "colorimetry/image/exr.h"
 #include "colorimetry/observer_integral.h"
 
 #include <math.h>
@@ -96,27 +97,44 @@ static double brightest(const abbe_image *image, const abbe_spectral_channels *c
   return most;
 }
 
+/* weight: of the channels' share of R, G and B. */
 static void fill(const abbe_image *image, const abbe_spectral_channels *c,
-                 const double (*weight)[3], const double *factor, const double matrix[9],
-                 abbe_image *out) {
-  double most = 0;
+                 const double (*weight)[3], const double *factor, bool infinite, abbe_image *out) {
+  const double most = infinite ? brightest(image, c) : 0;
+#pragma omp parallel for
   for (size_t p = 0; p < image->width * image->height; p++) {
     const float *from = image->data + p * image->channels;
     float *to = out->data + p * out->channels;
     double sum[3] = {0};
     for (size_t i = 0; i < c->terms; i++) {
       double value = (double)from[c->channel[i]];
-      if (isinf(value)) {
-        if (most == 0) most = brightest(image, c);
-        value = copysign(most, value);
-      }
+      if (isinf(value)) value = copysign(most, value);
       for (int k = 0; k < 3; k++) sum[k] += weight[i][k] * value;
     }
-    abbe_rgb_space_apply(matrix, sum, sum);
     for (int k = 0; k < 3; k++) to[k] = (float)sum[k];
     for (size_t i = 0; i + 3 < out->channels; i++)
       to[3 + i] = (float)(factor[i] * (double)from[c->channel[i]]);
   }
+}
+
+/* Of a file the colours alone are held, but for bands that are kept and for infinities, which need
+ * to be known before. */
+static abbe_result fill_from(const abbe_image *image, const abbe_spectral_channels *c,
+                             const abbe_relight_desc *d, const double (*weight)[3],
+                             const double *factor, abbe_image *out, abbe_error *error) {
+  abbe_image whole = {0};
+  abbe_image_odd odd = {0};
+  if (d->file != NULL && !d->bands)
+    ABBE_TRY(abbe_exr_read_sums(d->file, c->terms, c->channel, weight, out, &odd, error));
+  if (d->file == NULL || d->bands || odd.infinite > 0) {
+    if (d->file != NULL) ABBE_TRY(abbe_exr_read_first(d->file, SIZE_MAX, &whole, error));
+    const abbe_image *from = d->file != NULL ? &whole : image;
+    abbe_image_count_odd(from, c->channel, c->terms, &odd);
+    fill(from, c, weight, factor, odd.infinite > 0, out);
+    abbe_image_free(&whole);
+  }
+  if (d->odd != NULL) *d->odd = odd;
+  return ABBE_OK;
 }
 
 static abbe_result describe(const abbe_image *image, const abbe_spectral_channels *c,
@@ -155,8 +173,9 @@ static abbe_result relight(const abbe_image *image, const char *name,
     const double unit = ABBE_SPECTRAL_COLOUR_KM * even_y(c, d->view.observer);
     for (int k = 0; k < 9; k++) matrix[k] /= unit;
   }
-  fill(image, c, (const double(*)[3])weight, factor, matrix, out);
-  result = describe(image, c, d, out, error);
+  for (size_t i = 0; i < c->terms; i++) abbe_rgb_space_apply(matrix, weight[i], weight[i]);
+  result = fill_from(image, c, d, (const double(*)[3])weight, factor, out, error);
+  if (result == ABBE_OK) result = describe(image, c, d, out, error);
   if (result != ABBE_OK) abbe_image_free(out);
   return result;
 }
@@ -166,8 +185,6 @@ abbe_result abbe_relight_make(const abbe_image *image, const char *name,
   *out = (abbe_image){0};
   abbe_spectral_channels c = {0};
   abbe_result result = abbe_spectral_channels_find(image, desc->layer, name, &c, error);
-  if (result == ABBE_OK && desc->odd != NULL)
-    abbe_image_count_odd(image, c.channel, c.terms, desc->odd);
   if (result == ABBE_OK && c.count == 0)
     result = abbe_error_set(error, ABBE_NOT_FOUND,
                             "%s: it has no bands%s%s%s such as S0.550,000000nm; abbe render "

@@ -21,7 +21,9 @@ typedef struct abbe_relight_desc {
   /* where the light is not known: light of 1 W/(m2 sr nm) at all wavelengths has Y = 1, instead of
    * lm */
   bool relative;
-  abbe_image_odd *odd; /* filled, of the bands; may be NULL */
+  struct abbe_exr_reader *file; /* the picture's pixels are there and not in the image (exr.h), of
+                                   which only the colours are held; NULL: they are in the image */
+  abbe_image_odd *odd;          /* filled, of the bands; may be NULL */
 } abbe_relight_desc;
 
 /* The picture's colours as channels R, G, B (X, Y, Z), with the space's chromaticities, windows and

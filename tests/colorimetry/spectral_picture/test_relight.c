@@ -1,6 +1,7 @@
 #include "tests/check.h"
 
 #include "colorimetry/chromaticity.h"
+#include "colorimetry/image/exr.h"
 #include "colorimetry/spectral_picture/relight.h"
 #include "colorimetry/weights.h"
 
@@ -111,6 +112,36 @@ TEST(units) {
     assert_near((double)xyz.data[1], 0.683 * 106.856, 0.03); /* the CIE's sum over 360 to 830 nm */
     assert_string_equal(abbe_image_attribute_text(&xyz, "abbe:unit"), cases[i].says);
   }
+}
+
+/* Of a file, of which the colours alone are held, as of the same picture in memory: with samples
+ * that are no numbers, with infinite ones, and with bands kept. */
+TEST(from_a_file) {
+  static const char path[] = "relight_file.exr";
+  FILLED(abbe_image, image, make("S0.", &image));
+  for (size_t i = 0; i < 2 * BANDS; i++) image.data[i] = 0.01f * (float)(i * 37 % 101) - 0.1f;
+  for (int i = 0; i < 4; i++) {
+    abbe_image_odd odd, odd_file;
+    abbe_relight_desc desc = {.space = ABBE_RGB_SPACE_ACESCG, .odd = &odd, .bands = i == 3};
+    if (i > 0) image.data[i == 1 ? 7 : BANDS + 3] = i == 1 ? NAN : INFINITY;
+    OK(abbe_exr_write(path, &image, &error));
+    MADE(abbe_image, expected, abbe_relight_make(&image, "it", &desc, &expected, &error));
+    OK(abbe_exr_open(path, &desc.file, &error));
+    MADE(abbe_image, header, abbe_exr_read_header(desc.file, &header, &error));
+    assert_null(header.data);
+    desc.odd = &odd_file;
+    MADE(abbe_image, out, abbe_relight_make(&header, "it", &desc, &out, &error));
+    for (size_t k = 0; k < 2 * out.channels; k++)
+      if (isnan(expected.data[k]))
+        assert_true(isnan(out.data[k]));
+      else if (isfinite(expected.data[k]))
+        assert_near((double)out.data[k], (double)expected.data[k],
+                    1e-7 * fabs((double)expected.data[k]));
+    assert_true(odd.nan == odd_file.nan && odd.infinite == odd_file.infinite);
+    assert_true(odd.nan == (size_t)(i > 0) && odd.infinite == (size_t)(i > 1));
+    abbe_exr_close(desc.file);
+  }
+  remove(path);
 }
 
 /* An infinite band is as bright as the brightest half, or as the brightest band that there is, and
