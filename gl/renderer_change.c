@@ -173,6 +173,7 @@ static abbe_result change(abbe_renderer *r, const abbe_scene *scene, const abbe_
   if ((parts & LIGHT) != 0) abbe_method_leave(r->method, &frames);
   r->pages_stay = parts != ALL && r->inputs.pages == inputs.pages;
   r->glow_stays = parts != ALL && r->inputs.glow == inputs.glow;
+  r->glow.lit = r->glow.lit && r->inputs.glow == inputs.glow; /* powers leave the camera's passes */
   free_parts(r, parts);
   r->pages_stay = r->glow_stays = false;
   if (parts == ALL && crowded) abbe_gpu_drop_programs(&r->gpu);

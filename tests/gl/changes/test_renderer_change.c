@@ -57,6 +57,25 @@ TEST(a_change_runs_what_depends_on_it) {
   }
 }
 
+/* Glow stays as it is for another camera alone. */
+TEST(glow_goes_by_what_lights_it) {
+  OWNED(abbe_scene, scene) =
+      scene_of("camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR BRICK(
+          "diamond-fluorescent"));
+  HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &tiny);
+  static const char *const whats[] = {"the camera", "a power", "ambient light", "a reflectance"};
+  for (int i = 0; i < 4; i++) {
+    if (i == 0) scene.camera.eye[0] += 0.1;
+    if (i == 1) scene.light[0].power *= 0.5;
+    if (i == 2) scene.ambient += 0.25;
+    if (i == 3) scene.object[0].reflectance[1] = 0.125;
+    OK(change(renderer, &scene, &tiny));
+    const abbe_statistics s = draw_frame(renderer);
+    assert_true(abbe_statistics_ran(&s, ABBE_PASS_EYE_GLOW) == (i > 0));
+    assert_as_made_anew(renderer, &scene, &tiny, whats[i]);
+  }
+}
+
 /* A camera that looks away sees no refractor: its pass, and its buffers, come and go. */
 TEST(what_the_camera_sees_comes_and_goes) {
   OWNED(abbe_scene, scene) = scene_of(GLASS_SCENE);
