@@ -140,7 +140,7 @@ int first_wave_of(ivec2 at) { return SAMPLE_AT(at).y & 1; }
 const int WAVES = 2;
 int first_wave_of(ivec2 at) { return 0; }
 #endif
-int first_wave;
+int first_wave = 0;  // of what comes from no pixel as well
 #endif
 
 ivec2 pixel_of(uint listed) {

@@ -3,6 +3,7 @@
 #include "tests/scenes/scene_text.h"
 
 #include "gl/renderer_state.h"
+#include "gl/scene/spectra/camera_bands.h"
 
 enum {
   GEOMETRY = 1 << ABBE_PART_GEOMETRY,
@@ -225,5 +226,30 @@ TEST(lines_of_lights_are_of_the_spectra) {
   e.desc.wavelengths = 2;
   inputs_of(&e, &even);
   assert_int_equal(abbe_renderer_inputs_differ(&even, &lines), SPECTRA | WAY);
+  abbe_scene_free(&e.scene);
+}
+
+/* A light between two stones has a cube of views, and is one light to what glows by a matrix. */
+TEST(light_of_several_views_excites_once) {
+  enum { ROWS = 2 };
+  const double by_nm[ROWS] = {410, 450}, nm[2] = {500, 600}, photons[2] = {0.002, 0.002};
+  edited e = {.desc = {.width = 32, .height = 32, .photons = 32, .map_size = 64}};
+  double weight[2][ROWS];
+  e.scene = scene_of(CAMERA "lights: [{name: lamp, kind: point, position: [0.115, 0, 0.2], "
+                            "intensity: 1}]\n" FLOOR BALL("murk") BRICK("crown"));
+  for (int i = 0; i < ROWS; i++) {
+    abbe_spectrum *row = NULL;
+    OK(abbe_spectrum_make(nm, photons, 2, ABBE_INTERPOLATION_LINEAR, &row, &error));
+    OK(abbe_fluorescence_add_row(&glass_of(&e)->fluorescence, by_nm[i], row, &error));
+  }
+  OK(abbe_fluorescence_sum_rows(&glass_of(&e)->fluorescence, &error));
+  MADE(abbe_plan, plan, abbe_plan_make(&e.scene, &e.desc, &plan, &error));
+  assert_true(plan.light_view_count > e.scene.light_count);
+  for (int i = 0; i < 2; i++) {
+    abbe_glow_rows_weigh(&e.scene, &plan, ball_of(&e), weight[i]);
+    plan.light_view_count = e.scene.light_count;
+  }
+  for (int i = 0; i < ROWS; i++) assert_near(weight[0][i], weight[1][i], 0);
+  assert_true(weight[0][0] > 0 && weight[0][1] > 0);
   abbe_scene_free(&e.scene);
 }

@@ -34,9 +34,9 @@ void abbe_glow_rows_weigh(const abbe_scene *scene, const abbe_plan *plan, const 
   for (int c = 0; c < 3; c++) middle[c] = 0.5 * (o->min[c] + o->max[c]);
   for (size_t r = 0; r < rows; r++) weight[r] = 0;
   for (size_t i = 0; rows > 1 && i < plan->light_view_count; i++) {
+    if (plan->light_view[i].light != i) continue; /* one more face of a cube */
     const abbe_light *l = &scene->light[i];
     double to[3], irradiance = l->power;
-    if (plan->light_view[i].light != i) continue;
     abbe_vector_subtract(middle, l->position, to);
     const double away = abbe_vector_length(to);
     if (l->kind != ABBE_LIGHT_DIRECTIONAL) {
