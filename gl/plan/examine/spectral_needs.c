@@ -153,22 +153,20 @@ static void note_birefringence(const abbe_material *m, double lambda_nm, abbe_pl
 /* How three indices lie in the scene. */
 static void note_biaxial(const abbe_object *object, double low, double high, abbe_plan *plan) {
   const abbe_material *m = object->material;
-  double n[3], twice[2];
+  const double at_nm[3] = {low, high, (low + high) / 2};
+  double n[3], twice[3];
   if (!abbe_material_is_biaxial(m)) return;
-  for (int end = 0; end < 2; end++) {
+  for (int at = 0; at < 3; at++) {
     for (int axis = 0; axis < 3; axis++)
-      if (abbe_material_n_along(m, axis, end == 0 ? low : high, &n[axis], NULL) != ABBE_OK) return;
-    twice[end] = 2 * abbe_biaxial_half_angle(n) * 180 / ABBE_PI;
+      if (abbe_material_n_along(m, axis, at_nm[at], &n[axis], NULL) != ABBE_OK) return;
+    twice[at] = 2 * abbe_biaxial_half_angle(n) * 180 / ABBE_PI;
   }
-  for (int axis = 0; axis < 3; axis++)
-    if (abbe_material_n_along(m, axis, (low + high) / 2, &n[axis], NULL) != ABBE_OK) return;
-  const double middle = 2 * abbe_biaxial_half_angle(n) * 180 / ABBE_PI;
   abbe_plan_note(
       plan,
       "%s: biaxial, %s; 2V about z is %.1f degrees at %g nm, %.1f and %.1f at the ends; x "
       "is %.2f %.2f %.2f, z %.2f %.2f %.2f; the outer indices are %.4f lower and %.4f higher than "
       "the middle one",
-      m->name, middle < 90 ? "positive" : "negative", middle, (low + high) / 2, twice[0], twice[1],
+      m->name, twice[2] < 90 ? "positive" : "negative", twice[2], at_nm[2], twice[0], twice[1],
       object->axis_x[0], object->axis_x[1], object->axis_x[2], object->axis[0], object->axis[1],
       object->axis[2], n[1] - n[0], n[2] - n[1]);
 }

@@ -114,8 +114,7 @@ TEST(spots_end_where_they_end) {
 }
 
 /* A disk of radius R, radiance L, over a place at height h facing it: E = pi L R^2 / (R^2 + h^2);
- * off its axis by x: E = pi L / 2 (1 - (h^2 + x^2 - R^2) / sqrt((h^2 + x^2 + R^2)^2 - 4 x^2 R^2)).
- */
+ * off its axis by x: pi L / 2 (1 - (h^2 + x^2 - R^2) / sqrt((h^2 + x^2 + R^2)^2 - 4 x^2 R^2)). */
 TEST(a_disks_irradiance) {
   for (int i = 0; i < 2; i++) {
     const char *text = i ? DOWN LIGHT("kind: disk, position: [0.5, 0, 0.3], direction: [0, 0, -1], "
@@ -140,9 +139,8 @@ TEST(a_disks_irradiance) {
 }
 
 /* Lambert's formula for a polygon of radiance L: E = L / 2 times the sum over its edges of the
- * angle that an edge subtends times the cosine between the receiver's normal and that of the edge's
- * plane.
- */
+ * angle that an edge subtends times the cosine between the receiver's normal and the edge's
+ * plane's. */
 static double polygon_irradiance(double (*corner)[3], size_t count, const double at[3]) {
   double sum = 0;
   for (size_t i = 0; i < count; i++) {
@@ -366,11 +364,7 @@ TEST(a_slab_mirrors_the_sky) {
   for (int matched = 0; matched < 2; matched++) {
     OWNED(fixture, f) = {0};
     desc.physics = (abbe_physics){.matched = matched == 1, .orders = 1};
-    make_with(
-        DOWN EVEN_SKY
-        "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0}\n" SLAB(
-            "flat"),
-        &desc, 0, &f);
+    make_with(DOWN EVEN_SKY "objects:\n" GROUND SLAB("flat"), &desc, 0, &f);
     look(&f, 400, mean, error);
     for (int k = 0; k < 3; k++)
       assert_near(mean[k], matched ? r : 2 * r / (1 + r), 4 * error[k] + 1e-6);
