@@ -40,10 +40,9 @@ const float MOST_SHOWN = 0x1p60F, MOST_READ = 0x1p100F;
 
 /* OpenColorIO reads the numbers of a configuration by the thread's locale. */
 struct plain_numbers {
-  locale_t host = abbe_number_enter();
+  const locale_t host = abbe_number_enter(); /* and so it is not assigned */
   plain_numbers() = default;
   plain_numbers(const plain_numbers &) = delete;
-  plain_numbers &operator=(const plain_numbers &) = delete;
   ~plain_numbers() { abbe_number_leave(host); }
 };
 
@@ -63,8 +62,8 @@ template <typename Work> abbe_result guarded(const char *what, abbe_error *error
 
 const char *config_path(const char *path) {
   if (path != nullptr) return path;
-  const char *environment = std::getenv("OCIO");
-  return environment != nullptr && environment[0] != '\0' ? environment : nullptr;
+  const char *set = std::getenv("OCIO");
+  return set != nullptr && set[0] != '\0' ? set : nullptr;
 }
 
 const char *config_name(const char *path) {
@@ -369,46 +368,47 @@ abbe_result find_source(const OCIO::ConstConfigRcPtr &config, const abbe_display
                  error);
 }
 
-/* An ICC profile becomes a display as OpenColorIO has it, with the configuration's views for it. */
-OCIO::ConstConfigRcPtr with_profile(const OCIO::ConstConfigRcPtr &config, std::string *display) {
-  const std::filesystem::path name = *display;
-  if (name.extension() != ".icc" && name.extension() != ".icm") return config;
-  OCIO::ConfigRcPtr made = config->createEditableCopy();
-  *display = made->getDisplay(made->instantiateDisplayFromICCProfile(absolute(name).c_str()));
-  return made;
-}
-
-abbe_result make(const abbe_display_desc *desc, abbe_display **out, abbe_error *error) {
-  const char *name = config_name(desc->config);
-  OCIO::ConstConfigRcPtr config = load(desc->config);
-  std::string display = desc->display != nullptr ? desc->display : config->getDefaultDisplay();
-  config = with_profile(config, &display);
+abbe_result make_on(const OCIO::ConstConfigRcPtr &config, const char *display,
+                    const abbe_display_desc *desc, abbe_display **out, abbe_error *error) {
+  const char *const name = config_name(desc->config);
   const auto display_name = [&](int i) { return config->getDisplay(i); };
-  if (!has(display.c_str(), config->getNumDisplays(), display_name))
-    return unknown(name, "display", display.c_str(), listed(config->getNumDisplays(), display_name),
-                   error);
-  const std::string view =
-      desc->view != nullptr ? desc->view : config->getDefaultView(display.c_str());
-  const auto view_name = [&](int i) { return config->getView(display.c_str(), i); };
-  const int views = config->getNumViews(display.c_str());
+  const int displays = config->getNumDisplays();
+  if (!has(display, displays, display_name))
+    return unknown(name, "display", display, listed(displays, display_name), error);
+  const std::string view = desc->view != nullptr ? desc->view : config->getDefaultView(display);
+  const auto view_name = [&](int i) { return config->getView(display, i); };
+  const int views = config->getNumViews(display);
   if (!has(view.c_str(), views, view_name))
     return unknown(name, "view", view.c_str(), listed(views, view_name), error);
   const anchor door = find_anchor(config);
   source_space source;
-  abbe_result result = find_source(config, desc, door, &source, error);
-  if (result != ABBE_OK) return result;
+  ABBE_TRY(find_source(config, desc, door, &source, error));
   abbe_display made = {};
   const bool by_xyz = desc->white[0] != 0 || desc->white[1] != 0 || desc->gamut != 0;
   made.adjusts = by_xyz || desc->exposure != 0;
   find_encoding(config, display, view.c_str(), &made);
   if (by_xyz)
-    result = adjust(config, desc, source, door, display.c_str(), view.c_str(), &made, error);
+    ABBE_TRY(adjust(config, desc, source, door, display, view.c_str(), &made, error));
   else
-    show_plainly(config, source, door, display.c_str(), view.c_str(), &made);
-  if (result != ABBE_OK) return result;
+    show_plainly(config, source, door, display, view.c_str(), &made);
   for (double &number : made.adjustment) number *= std::exp2(desc->exposure);
   *out = new abbe_display(made);
   return ABBE_OK;
+}
+
+/* An ICC profile becomes a display as OpenColorIO has it, with the configuration's views for it. */
+abbe_result make(const abbe_display_desc *desc, abbe_display **out, abbe_error *error) {
+  const OCIO::ConstConfigRcPtr config = load(desc->config);
+  const std::string name = desc->display != nullptr ? desc->display : config->getDefaultDisplay();
+  const auto ending = std::filesystem::path(name).extension();
+  if (ending != ".icc" && ending != ".icm") return make_on(config, name.c_str(), desc, out, error);
+  const char *advice = " does not take this profile; --display sRGB needs none. Its reason";
+  const std::string what = name + ": OpenColorIO " + OCIO::GetVersion() + advice;
+  return guarded(what.c_str(), error, [=] {
+    const OCIO::ConfigRcPtr made = config->createEditableCopy();
+    const int at = made->instantiateDisplayFromICCProfile(std::filesystem::absolute(name).c_str());
+    return make_on(made, made->getDisplay(at), desc, out, error);
+  });
 }
 
 } // namespace

@@ -426,24 +426,22 @@ static void note_pane(const abbe_object *o, double lambda_nm, abbe_plan *plan) {
 
 /* Polarisers, and crystals between them. */
 static void note_polarisation(const abbe_scene *scene, abbe_plan *plan) {
-  const char *text = "%s: polarisation matters: its polariser is left out, and with it the half or "
-                     "more of the light that it takes; 'abbe trace' follows polarised light";
-  const abbe_object *behind = abbe_scene_crystal_in_line(scene);
-  if (behind != NULL)
-    abbe_plan_note(plan, "%s: polarisation matters: light comes to it from another crystal",
-                   behind->name);
+  const char *left = "%s: its polariser is left out, so all light passes; 'abbe trace' has it";
+  const char *behind = "%s: light that another crystal has polarised counts as unpolarised here; "
+                       "'abbe trace' follows polarised light";
+  const char *both = "%s: a thin plate's colours and optical activity are left out, here and in "
+                     "'abbe trace', which adds the powers of its two waves";
+  const abbe_object *in_line = abbe_scene_crystal_in_line(scene);
+  if (in_line != NULL) abbe_plan_note(plan, behind, in_line->name);
   if (!abbe_scene_is_polarised(scene)) return;
-  if (scene->camera.polariser.kind != ABBE_POLARISER_NONE) abbe_plan_note(plan, text, "camera");
+  if (scene->camera.polariser.kind != ABBE_POLARISER_NONE) abbe_plan_note(plan, left, "camera");
   for (size_t i = 0; i < scene->light_count; i++)
     if (scene->light[i].polariser.kind != ABBE_POLARISER_NONE)
-      abbe_plan_note(plan, text, scene->light[i].name);
+      abbe_plan_note(plan, left, scene->light[i].name);
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *o = &scene->object[i];
     if (o->material != NULL && abbe_material_is_crystal(o->material))
-      abbe_plan_note(plan,
-                     "%s: 'abbe trace' adds its two waves by power, so colours of thin plates are "
-                     "not there, and no optical activity",
-                     o->name);
+      abbe_plan_note(plan, both, o->name);
   }
 }
 

@@ -416,7 +416,8 @@ TEST(a_monitors_profile_is_a_display) {
   must_fail(&(abbe_display_desc){.display = path, .view = "Plane"}, ABBE_COLOUR,
             "Looking, Plain, Raw");
   OK(abbe_file_write(path, "none", 4, &error));
-  must_fail(&(abbe_display_desc){.display = path}, ABBE_COLOUR, path);
+  must_fail(&(abbe_display_desc){.display = path}, ABBE_COLOUR, printed("%s: OpenColorIO 2", path));
+  must_fail(&(abbe_display_desc){.display = path}, ABBE_COLOUR, "--display sRGB needs none");
   unlink(path);
   must_fail(&(abbe_display_desc){.display = path}, ABBE_COLOUR, path);
 }

@@ -269,8 +269,7 @@ TEST(lines_in_passes) {
     memcpy(f.display_window, shown[i], sizeof shown[i]);
     if (!exr_library_write(path, &f, why, sizeof why)) fail_msg("%s", why);
     MADE(abbe_image, whole, abbe_exr_read(path, &whole, &error));
-    const size_t row = whole.width * sizeof(float), blank = i == 2 ? 8 : 0,
-                 chunks = whole.height - blank;
+    const size_t row = 37 * sizeof(float), blank = i == 2 ? 8 : 0, chunks = whole.height - blank;
     abbe_exr_reader *reader = NULL;
     OK(abbe_exr_open(path, &reader, &error));
     MADE(abbe_image, image,

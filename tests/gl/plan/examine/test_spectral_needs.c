@@ -120,9 +120,9 @@ TEST(polarisation_that_matters_is_noted) {
                     "polariser: {angle: 30}}]\n" FLOOR "%s",
                     objects),
             NULL, &plan);
-  assert_true(is_noted(&plan, "camera: polarisation matters: its polariser is left out"));
-  assert_true(is_noted(&plan, "sun: polarisation matters: its polariser is left out"));
-  assert_true(is_noted(&plan, "pane: 'abbe trace' adds its two waves by power"));
+  assert_true(is_noted(&plan, "camera: its polariser is left out"));
+  assert_true(is_noted(&plan, "sun: its polariser is left out"));
+  assert_true(is_noted(&plan, "pane: a thin plate's colours and optical activity are left out"));
   abbe_plan_free(&plan);
   static const char *const rows[][2] = {{"1.5", "0.1638 of light at 60 degrees, and 0.1519 by"},
                                         {"2.417", "0.3488 of light at 60 degrees, and 0.3050 by"}};
