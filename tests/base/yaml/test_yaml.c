@@ -80,7 +80,7 @@ TEST(typed_values_are_read_and_defaults_kept) {
   assert_near(n, -1.5e-3, 0);
   OK(abbe_yaml_get_number(y, root, "absent", -1, 1, &absent, &error));
   assert_near(absent, 7, 0);
-  OK(abbe_yaml_get_count(y, root, "c", 0, 42, &c, &error));
+  OK(abbe_yaml_get_count(y, root, "c", 42, 42, &c, &error));
   assert_int_equal(c, 42);
   OK(abbe_yaml_get_bool(y, root, "b", &b, &error));
   assert_true(b);

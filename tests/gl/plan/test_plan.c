@@ -155,4 +155,16 @@ TEST(lists_name_the_scenes_objects) {
               !plan.absorbing);
 }
 
+/* Light that ends at facets' edges is for what lays splats in rows; published passes lay none. */
+TEST(facets_have_edges_for_own_passes) {
+  const abbe_render_desc thesis = {.profile = ABBE_PROFILE_THESIS};
+  for (int i = 0; i < 3; i++) {
+    OWNED(abbe_plan, plan);
+    plan_text(i == 1 ? CAMERA POINT_LIGHT FLOOR BALL("crown")
+                     : CAMERA POINT_LIGHT FLOOR CUBE("crown"),
+              i == 2 ? &thesis : NULL, &plan);
+    assert_int_equal(plan.edges, i == 0);
+  }
+}
+
 GROUP(plan_pairs, NULL);

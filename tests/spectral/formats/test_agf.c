@@ -252,6 +252,7 @@ TEST(what_is_no_catalogue_is_refused) {
   refuses("", ABBE_PARSE, "x.agf: has no NM line");
   refuses("materials:\n- name: x\n", ABBE_PARSE, "no Zemax glass catalogue");
   refuses("NM A 99\n", ABBE_SCHEMA, "none of its 1 glasses can be used; the first: its formula");
+  refuses("NM A 14\n", ABBE_SCHEMA, "its formula is '14'");
 }
 
 /* A thousand glasses with 33 transmittances each, as a maker's catalogue has. */

@@ -20,6 +20,13 @@ static const char wedge[] =
     CAMERA SUN FLOOR "- {name: wedge, shape: prism, apex: 50, side: 0.2, length: 0.2, material: "
                      "crown, transform: [{translate: [0, 0, 0.2]}]}\n";
 
+#define SUN_OF(name) "- {name: " name ", kind: directional, direction: [0, 0, -1], irradiance: 1}\n"
+#define SUNS(name) SUN_OF(name "1") SUN_OF(name "2") SUN_OF(name "3")
+#define CHEST(name, x)                                                                             \
+  "- {name: " name                                                                                 \
+  ", shape: box, size: [0.2, 0.2, 0.2], reflectance: 0.5, transform: [{translate: "                \
+  "[" x ", 0, 0]}]}\n"
+
 static const abbe_region_desc regions[] = {
     {.kind = ABBE_REGION_GRID, .side = 16},
     {.kind = ABBE_REGION_GEODESIC, .levels = 3, .shells = 8},
@@ -30,8 +37,9 @@ static void make_volume(const abbe_scene *scene, abbe_volume_kind kind, size_t r
   abbe_volume_fill_statistics done;
   const bool exits = kind == ABBE_VOLUME_EXITS;
   const abbe_volume_fill_desc desc =
-      FIELDS(.object = 1, .kind = exits ? ABBE_VOLUME_VECTOR : kind, .exits = exits ? 400 : 0,
-             .nodes = nodes, .region = regions[region], .photons = 8192, .passes = 1, .threads = 2);
+      FIELDS(.object = scene->object_count - 1, .kind = exits ? ABBE_VOLUME_VECTOR : kind,
+             .exits = exits ? 400 : 0, .nodes = nodes, .region = regions[region], .photons = 8192,
+             .passes = 1, .threads = 2);
   OK(abbe_volume_fill(scene, &desc, out, &done, &error));
 }
 
@@ -321,4 +329,23 @@ TEST(what_it_does_not_hold_is_refused) {
   d = (abbe_render_desc){.volume = &v, .max_nm = 800};
   refuse(&scene, &d, ABBE_UNSUPPORTED, "800");
   v.kind = ABBE_VOLUME_VECTOR;
+}
+
+/* Maps of rays are as many as uniforms hold, 192: of eight suns on both sides of twelve faces; of a
+ * ninth there are none. */
+TEST(maps_of_rays_are_as_many_as_fit) {
+  abbe_plan plan;
+  OWNED(abbe_scene, scene) = scene_of(CAMERA "lights:\n" SUNS("a") SUNS("b") SUNS(
+      "c") "objects:\n" CHEST("left", "-0.6") CHEST("right", "0.6") BALL("crown"));
+  assert_int_equal(scene.light_count, 9);
+  FILLED(abbe_caustic_volume, v, make_volume(&scene, ABBE_VOLUME_EXITS, 2, 12, &v));
+  const abbe_render_desc d = {.volume = &v};
+  OK(abbe_plan_make(&scene, &d, &plan, &error));
+  assert_int_equal(plan.volume_pages, 0);
+  abbe_plan_free(&plan);
+  scene.light_count = 8;
+  OK(abbe_plan_make(&scene, &d, &plan, &error));
+  scene.light_count = 9;
+  assert_int_equal(plan.volume_pages * plan.light_view_count, 192);
+  abbe_plan_free(&plan);
 }
