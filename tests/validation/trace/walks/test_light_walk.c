@@ -124,6 +124,15 @@ TEST(light_that_misses_is_not_counted) {
   assert_int_equal(abbe_light_walk_run(f.walk, &f.scene.light[0], 0, f.photon, 0, f.hit, &f.ledger),
                    0);
   fixture_free(&f);
+  /* another lamp in its way takes it, which nothing counts either */
+  make(CAMERA POINT_LIGHT "- {name: panel, kind: rectangle, position: [0.5, 0.3, 0.4], direction: "
+                          "[0, 0, 1], width: 0.2, "
+                          "height: 0.2, radiance: 1}\n" FLOOR BALL("flat"),
+       NULL, &f);
+  for (int i = 0; i < 2; i++)
+    assert_int_equal(shoot(&f, (double[3]){0.5, 0.3, 0.6 * i}, (double[3]){0, 0, 1 - 2 * i}, 1), 0);
+  assert_memory_equal(&f.ledger, &empty, sizeof empty);
+  fixture_free(&f);
 }
 
 /* Matched rules, on a slab at normal incidence: what the outside mirrors goes on (4 %), what is
