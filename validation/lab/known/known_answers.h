@@ -45,7 +45,7 @@
   X(sphere, "light under a sphere, rings and enclosed flux, one wavelength")                       \
   X(white, "light under a sphere in XYZ under D65")                                                \
   X(picture, "light under a sphere as the eye sees it: the caustic, and all light")                \
-  X(derive, "derivatives of single rays by numbers of the scene: slabs, a prism, balls, mirrors")  \
+  X(derive, "derivatives by numbers of the scene: single rays, edges that move, a pane's colour")  \
   X(convergence, "the error falls as one over the square root of the samples")
 
 #define ABBE_KNOWN_SIGMAS 4.0

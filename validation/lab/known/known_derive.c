@@ -1,9 +1,10 @@
 /* Derivatives of single rays through slabs, a prism and a ball and off mirrors, by numbers of the
- * scene. */
+ * scene, and of the light in outlines whose edges move. */
 #include "validation/lab/known/forms/closed_form.h"
 #include "validation/lab/known/known_light.h"
 
 #include "base/number.h"
+#include "colorimetry/observer.h"
 #include "spectral/dispersion/dispersion.h"
 #include "validation/measure/derive/derivative.h"
 
@@ -42,6 +43,15 @@
 #define CUP(radius)                                                                                \
   "- {name: cup, shape: lathe, around: 4096, profile: [[" radius ", -0.1], [" radius               \
   ", 0.1]], mirror: 1}\n"
+
+#define MIRROR_AT_45(width)                                                                        \
+  "- {name: facet, shape: rectangle, width: " width ", height: 0.05, mirror: 1,\n"                 \
+  "   transform: [{rotate: {axis: [0, 1, 0], angle: 45}}]}\n"
+/* A pane and, below or above it, a receiver of 5 cm. */
+#define PANE(width, z)                                                                             \
+  "- {name: pane, shape: box, size: [0.1, 0.1, 0.01], material: n-bk7}\n"                          \
+  "- {name: plate, shape: rectangle, width: " width ", height: 0.05, reflectance: 0.5,\n"          \
+  "   transform: [{translate: [0, 0, " z "]}]}\n"
 
 /* What a ray's answer is a function of, beside what it is derived by. */
 typedef struct setting {
@@ -308,7 +318,134 @@ static abbe_result add_ray(abbe_known_run *run, const ray_row *row, abbe_error *
   return result;
 }
 
+/* ---- outlines ---- */
+
+/* A row: a number of all that lands. The first object is of the glass. */
+typedef struct edge_row {
+  const char *quantity, *unit, *objects;
+  double value; /* of the key in the text; 0: the glass's B */
+  abbe_derivative_number number;
+  double (*exact)(const abbe_material *glass);
+} edge_row;
+
+/* A number of light of an equal-energy spectrum that passed both faces of a pane, by a B more. */
+static double passed_of(const abbe_material *glass, double b_um2, abbe_derivative_number number) {
+  double sum[3] = {0}, y = 0;
+  for (int nm = 380; nm <= 780; nm++) {
+    double xyz[3];
+    const double um = nm / 1000.0, share = nm == 380 || nm == 780 ? 0.5 : 1;
+    const double n = abbe_dispersion_n(&glass->dispersion, nm) + b_um2 / (um * um);
+    const double passed = 1 - abbe_closed_form_fresnel(0, n);
+    abbe_observer_xyz(nm, xyz);
+    for (int c = 0; c < 3; c++) sum[c] += share * xyz[c] * passed * passed;
+    y += share * xyz[1];
+  }
+  if (number == ABBE_DERIVATIVE_FLUX) return sum[1] / y;
+  return sum[number - ABBE_DERIVATIVE_CHROMA_X] / (sum[0] + sum[1] + sum[2]);
+}
+
+static double passed_slope(const abbe_material *glass, abbe_derivative_number number) {
+  return (passed_of(glass, 1e-4, number) - passed_of(glass, -1e-4, number)) / 2e-4;
+}
+
+static double facet_by_width(const abbe_material *glass) {
+  (void)glass;
+  return 0.05 * cos(45 * ABBE_DEGREE);
+}
+
+static double plate_by_width(const abbe_material *glass) {
+  return 0.05 * passed_of(glass, 0, ABBE_DERIVATIVE_FLUX);
+}
+
+static double shadow_by_width(const abbe_material *glass) {
+  return -plate_by_width(glass);
+}
+
+static double passed_by_b(const abbe_material *glass) {
+  return 0.05 * 0.05 * passed_slope(glass, ABBE_DERIVATIVE_FLUX);
+}
+
+static double x_by_b(const abbe_material *glass) {
+  return passed_slope(glass, ABBE_DERIVATIVE_CHROMA_X);
+}
+
+static double y_by_b(const abbe_material *glass) {
+  return passed_slope(glass, ABBE_DERIVATIVE_CHROMA_Y);
+}
+
+static const edge_row edges[] = {
+    {"light off a mirror at 45 degrees by its width", "W/m", HEAD WALL MIRROR_AT_45("%.17g"), 0.05,
+     ABBE_DERIVATIVE_FLUX, facet_by_width},
+    {"light on a plate behind a pane by the plate's width", "W/m", HEAD PANE("%.17g", "-0.1"), 0.05,
+     ABBE_DERIVATIVE_FLUX, plate_by_width},
+    {"light through a pane by the width of a plate before it", "W/m",
+     HEAD PANE("%.17g", "0.1") FLOOR, 0.05, ABBE_DERIVATIVE_FLUX, shadow_by_width},
+    {"Y of light through a pane by Cauchy's B", "W/um2", HEAD PANE("0.05", "-0.1"), 0,
+     ABBE_DERIVATIVE_FLUX, passed_by_b},
+    {"its chromaticity x by B", "1/um2", HEAD PANE("0.05", "-0.1"), 0, ABBE_DERIVATIVE_CHROMA_X,
+     x_by_b},
+    {"its chromaticity y by B", "1/um2", HEAD PANE("0.05", "-0.1"), 0, ABBE_DERIVATIVE_CHROMA_Y,
+     y_by_b},
+};
+enum { EDGES = sizeof edges / sizeof *edges, INTERFACES = 3 };
+
+/* The scene as it is, with the key less, and with it more. */
+static abbe_result move_edge(const edge_row *row, double step, abbe_scene scene[3],
+                             abbe_specular specular[3], abbe_error *error) {
+  for (int i = 0; i < 3; i++) {
+    const double by = i == 0 ? 0 : i == 1 ? -step : step;
+    const abbe_specular_shift shift = {.material = "n-bk7", .b_um2 = row->value == 0 ? by : 0};
+    ABBE_TRY(abbe_known_scene(&scene[i], error, row->objects, 0.0, -1.0, row->value + by));
+    ABBE_TRY(abbe_specular_make(&scene[i], 0, &shift, &specular[i], error));
+    ABBE_TRY(i == 0 ? abbe_specular_narrow(&specular[0], 380, 780, INTERFACES, error)
+                    : abbe_specular_match(&specular[i], &specular[0], row->quantity, error));
+  }
+  return ABBE_OK;
+}
+
+static abbe_result add_edge(abbe_known_run *run, const edge_row *row, abbe_error *error) {
+  const double step = 1e-6;
+  abbe_scene scene[3] = {{0}};
+  abbe_specular specular[3] = {{0}};
+  abbe_spectral_sampling sampling = {0};
+  abbe_derivative d = {0};
+  const abbe_spectral_sampling_desc spectrum = {.min_nm = 380, .max_nm = 780, .uniform = 0.1};
+  abbe_result result = move_edge(row, step, scene, specular, error);
+  if (result == ABBE_OK) result = abbe_spectral_sampling_make(scene, &spectrum, &sampling, error);
+  const abbe_derivative_key key = {
+      .name = row->quantity, .step = step, .moved = {specular[1], specular[2]}};
+  const abbe_derivative_desc desc = {.base = &specular[0],
+                                     .keys = 1,
+                                     .key = &key,
+                                     .sampling = &sampling,
+                                     .lines = 2048,
+                                     .points = 4,
+                                     .interfaces = INTERFACES,
+                                     .seed = (uint32_t)run->options->seed,
+                                     .threads = run->options->threads};
+  if (result == ABBE_OK) result = abbe_derivative_make(&desc, &d, error);
+  if (result == ABBE_OK) {
+    abbe_known_answer answer = {.unit = row->unit,
+                                .reason = "four standard errors, and 1e-5 of it for differences "
+                                          "over a step"};
+    abbe_number_format(answer.quantity, sizeof answer.quantity, "%s", row->quantity);
+    answer.exact = row->exact(scene[0].object[0].material);
+    answer.traced = abbe_derivative_number_of(&d, row->number, 1, &answer.standard_error);
+    answer.tolerance = ABBE_KNOWN_SIGMAS * answer.standard_error + 1e-5 * fabs(answer.exact);
+    answer.useful = 0.05 * fabs(answer.exact);
+    result = abbe_known_add(run, answer, error);
+  }
+  abbe_derivative_free(&d);
+  abbe_spectral_sampling_free(&sampling);
+  for (int i = 0; i < 3; i++) {
+    abbe_specular_free(&specular[i]);
+    abbe_scene_free(&scene[i]);
+  }
+  return result;
+}
+
 abbe_result abbe_known_derive(abbe_known_run *run, abbe_error *error) {
   for (int i = 0; i < RAYS; i++) ABBE_TRY(add_ray(run, &rays[i], error));
+  for (int i = 0; i < EDGES; i++) ABBE_TRY(add_edge(run, &edges[i], error));
   return ABBE_OK;
 }
