@@ -152,10 +152,7 @@ TEST(random_stones_close_their_ledger) {
     /* a clear smooth box keeps for ever what glows outside of its six cones, 3 cos c - 2 at the
        critical angle c, and a ball cos c of what glows at its surface: in diamond 0.74 and 0.91 */
     const double keeps = strstr(stone, "sphere") != NULL ? 0.92 : 0.75;
-    /* a smooth crystal's face turns a little of one wave into the other, which leaves late: of a
-       quartz box 7e-5, 2e-5, 1e-5 after 2500, 10000, 40000 faces, and few photons carry it */
-    const bool late = abbe_material_is_crystal(m) && strstr(stone, "roughness") == NULL;
-    const bool bounded = l->lost <= (late ? 1e-3 : 1e-4) * in + keeps * l->glowing;
+    const bool bounded = l->lost <= 1e-4 * in + keeps * l->glowing;
     const bool right = fabs(out - in) <= 1e-6 * in && bounded &&
                        (!clear || fabs(mean - 1) <= 12 * standard_error + 1e-3);
     if (!right)
