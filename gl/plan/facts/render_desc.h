@@ -79,6 +79,8 @@ typedef bool (*abbe_render_progress)(void *user, double done);
  * left inside then is too little to show. */
 #define ABBE_PLAN_EYE_EXITS 256
 #define ABBE_PLAN_EYE_SHARE 0.005
+/* The same beside a mirror: below the 4 % that glass reflects, which mirrors show. */
+#define ABBE_PLAN_MIRROR_SHARE 0.03
 
 /* A request; zero means the default in every field. */
 typedef struct abbe_render_desc {
