@@ -73,14 +73,15 @@ static void tint_nodes_fill(const abbe_scene *scene, const abbe_plan *plan,
   const size_t surfaces = abbe_plan_surfaces(plan);
   for (size_t r = 0; r < surfaces; r++) {
     const int tint = abbe_tint_of(scene, plan, r);
+    const size_t as = tint < 0 ? r : (size_t)tint; /* all that a path lists */
     for (size_t i = 0; i < w->count; i++) {
       float(*of)[4] = out[i * surfaces + r];
       const double end_nm = one ? w->edge_nm[1] : w->lambda_nm[i];
       const double begin_nm = one ? w->edge_nm[0] : w->lambda_nm[i];
       of[1][0] = 0;
       of[1][1] = (float)tint;
-      fill_half(scene, plan, r, &light, w->edge_nm[i], end_nm, of[0], &of[1][0]);
-      fill_half(scene, plan, r, &light, begin_nm, w->edge_nm[i + 1], of[0] + 2, &of[1][0]);
+      fill_half(scene, plan, as, &light, w->edge_nm[i], end_nm, of[0], &of[1][0]);
+      fill_half(scene, plan, as, &light, begin_nm, w->edge_nm[i + 1], of[0] + 2, &of[1][0]);
     }
   }
 }

@@ -81,6 +81,18 @@ TEST(every_sampling_holds_all_of_the_light) {
   done(&f);
 }
 
+/* A path lists how much it passed of a tint, by whatever refractor: they attenuate alike. */
+TEST(refractors_of_one_tint_have_its_parts) {
+  fixture f;
+  make(CAMERA POINT_LIGHT FLOOR BALL("murk") BRICK("murk"), &f);
+  assert_true(f.plan.tints == 1 && f.plan.refractor_count == 2);
+  const float *ball = (const float *)f.tables.tints, *brick = ball + 4 * ABBE_TINT_TEXELS;
+  const size_t nodes = f.tables.coarse.count + f.tables.all.count;
+  for (size_t i = 0; i < nodes * 2 * 4 * ABBE_TINT_TEXELS; i += 2 * 4 * ABBE_TINT_TEXELS)
+    for (size_t k = 0; k < 4 * ABBE_TINT_TEXELS; k++) assert_near(ball[i + k], brick[i + k], 0);
+  done(&f);
+}
+
 /* Four bands of the range, three and then the last. */
 TEST(bands_tile_the_light) {
   fixture f;
