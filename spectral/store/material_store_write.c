@@ -189,9 +189,24 @@ struct abbe_material_store_maker {
   size_t rows;
 };
 
+static const char *temporary_folder(void) {
+  const char *folder = getenv("TMPDIR");
+  return folder != NULL && folder[0] != '\0' ? folder : "/tmp";
+}
+
+/* A store is made in a temporary file, whose disk may be another one than the store's. */
+static abbe_result fail_to_make(sqlite3 *db, int code, const char *name, abbe_error *error) {
+  if ((code & 0xff) != SQLITE_IOERR && (code & 0xff) != SQLITE_FULL)
+    return abbe_store_fail(db, code, name, error);
+  return abbe_error_set(error, ABBE_IO,
+                        "a temporary file in %s could not be written: %s; TMPDIR may name another "
+                        "folder",
+                        temporary_folder(), sqlite3_errmsg(db));
+}
+
 static abbe_result execute(sqlite3 *db, const char *sql, abbe_error *error) {
   int code = sqlite3_exec(db, sql, NULL, NULL, NULL);
-  return code == SQLITE_OK ? ABBE_OK : abbe_store_fail(db, code, "the store", error);
+  return code == SQLITE_OK ? ABBE_OK : fail_to_make(db, code, "the store", error);
 }
 
 #define ASKED(name, type) ", ?"
@@ -199,7 +214,7 @@ static abbe_result execute(sqlite3 *db, const char *sql, abbe_error *error) {
 static abbe_result begin(abbe_material_store_maker *s, const char *path, abbe_error *error) {
   char sql[256];
   int code = sqlite3_open_v2(path, &s->db, SQLITE_OPEN_READWRITE, NULL);
-  if (code != SQLITE_OK) return abbe_store_fail(s->db, code, path, error);
+  if (code != SQLITE_OK) return fail_to_make(s->db, code, path, error);
   snprintf(sql, sizeof sql,
            "PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA application_id=%d; "
            "PRAGMA user_version=%d; BEGIN",
@@ -212,13 +227,11 @@ static abbe_result begin(abbe_material_store_maker *s, const char *path, abbe_er
 }
 
 abbe_result abbe_material_store_begin(abbe_material_store_maker **out, abbe_error *error) {
-  const char *folder = getenv("TMPDIR");
   char path[4096];
   abbe_material_store_maker *s = calloc(1, sizeof *s);
   *out = s;
   if (s == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a store");
-  snprintf(path, sizeof path, "%s/abbe-store-XXXXXX",
-           folder != NULL && folder[0] != '\0' ? folder : "/tmp");
+  snprintf(path, sizeof path, "%s/abbe-store-XXXXXX", temporary_folder());
   s->fd = mkstemp(path);
   if (s->fd < 0)
     return abbe_error_set(error, ABBE_IO,
@@ -260,7 +273,7 @@ abbe_result abbe_material_store_put(abbe_material_store_maker *s, abbe_material 
   snprintf(apart, sizeof apart, "\x01%zu", s->rows + 1);
   int code = insert(s, m, m->name);
   if (code == SQLITE_CONSTRAINT) code = insert(s, m, apart);
-  if (code != SQLITE_DONE) return abbe_store_fail(s->db, code, m->name, error);
+  if (code != SQLITE_DONE) return fail_to_make(s->db, code, m->name, error);
   abbe_material kept = {.name = m->name, .line = m->line, .row = s->rows};
   m->name = NULL;
   abbe_material_free(m);
@@ -287,7 +300,7 @@ static abbe_result name_rows(abbe_material_store_maker *s, const abbe_material_t
       if (m != NULL && code == SQLITE_OK)
         code = sqlite3_bind_text(q, 2, m->name, -1, SQLITE_STATIC);
       if (code == SQLITE_OK) code = sqlite3_step(q);
-      if (code != SQLITE_DONE) result = abbe_store_fail(s->db, code, "the store", error);
+      if (code != SQLITE_DONE) result = fail_to_make(s->db, code, "the store", error);
     }
     sqlite3_finalize(q);
   }
@@ -301,7 +314,7 @@ static abbe_result describe(sqlite3 *db, const char *description, abbe_error *er
   if (result != ABBE_OK) return result;
   int code = sqlite3_bind_text(q, 1, description, -1, SQLITE_STATIC);
   if (code == SQLITE_OK) code = sqlite3_step(q);
-  if (code != SQLITE_DONE) result = abbe_store_fail(db, code, "the store", error);
+  if (code != SQLITE_DONE) result = fail_to_make(db, code, "the store", error);
   sqlite3_finalize(q);
   return result;
 }
@@ -333,7 +346,7 @@ static abbe_result insert_all(abbe_material_store_maker *s, const abbe_material_
     const int code = insert(s, m, m->name);
     if (code == SQLITE_CONSTRAINT)
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the name '%s' stands twice", m->name);
-    if (code != SQLITE_DONE) return abbe_store_fail(s->db, code, m->name, error);
+    if (code != SQLITE_DONE) return fail_to_make(s->db, code, m->name, error);
   }
   return ABBE_OK;
 }
