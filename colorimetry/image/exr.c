@@ -179,6 +179,7 @@ static exr_result_t run(const job *j) {
                               ? abbe_exr_width(r->part[0].layout.data) *
                                     abbe_exr_height(r->part[0].layout.data) * channels_of(r)
                               : 0;
+  (void)numbers; /* where there is no OpenMP */
   exr_result_t failed = EXR_ERR_SUCCESS;
 #pragma omp parallel if (numbers / (j->step > 0 ? j->step : 1) > 1 << 20)
   {
