@@ -188,16 +188,19 @@ def _predict(setup, face, material):
 
 
 def _write(path, data):
-    """Beside its target, and renamed."""
-    beside = path + ".part"
+    """Beside its target until it is on the disk, and renamed: the old file or the new one."""
+    folder, name = os.path.split(os.path.realpath(path))
+    beside = os.path.join(folder, f".abbe-{os.getpid()}-0.part")
     try:
         with open(beside, "wb") as file:
             file.write(data)
-        os.replace(beside, path)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(beside, os.path.join(folder, name))
     except OSError as error:
         with contextlib.suppress(OSError):
             os.unlink(beside)
-        raise pane.Refused(f"{path}: {error.strerror}") from None
+        raise pane.Refused(f"{path}: could not be written and is as it was: {error.strerror}") from None
 
 
 def _pane(argv):
