@@ -44,21 +44,32 @@ static uint32_t step_of(const abbe_spectral_sampling *s, double nm, float *withi
   return (uint32_t)low;
 }
 
-void abbe_eye_weaken(const abbe_eye_context *c, abbe_eye_path *p, float length) {
+/* What light of the wavelengths around the path's own is weakened more than it on that length, and
+ * turned less where haze turns it at the end. */
+static void weigh_beside(const abbe_eye_context *c, abbe_eye_path *p, float length, bool turns) {
   const abbe_eye_walk *w = c->w;
   const abbe_media *m = w->media;
   const int medium = abbe_media_of(p->inside);
-  const float whole = extinction_at(m, medium, p, p->step, p->within);
-  p->share *= expf(-length * whole);
   if (!p->dispersed || w->grid == NULL || (medium < 0 && !abbe_haze_is_coloured(&m->haze, medium)))
     return;
+  const float whole = extinction_at(m, medium, p, p->step, p->within);
+  const float off = turns ? abbe_haze_scattering(&m->haze, medium, p->step, p->within) : 1;
   const double own = abbe_spectral_sampling_lambda(w->sampling, p->step, p->within);
   for (int k = 0; k < ABBE_EYE_BEYOND; k++) {
     float within;
-    const double off = 2.0 * k / (ABBE_EYE_BEYOND - 1) - 1;
-    const uint32_t step = step_of(w->sampling, own + off * w->window_nm, &within);
+    const double by = 2.0 * k / (ABBE_EYE_BEYOND - 1) - 1;
+    const uint32_t step = step_of(w->sampling, own + by * w->window_nm, &within);
     p->beyond[k] += length * (extinction_at(m, medium, p, step, within) - whole);
+    if (turns) /* not by nothing, which has no logarithm */
+      p->beyond[k] -=
+          logf(fmaxf(abbe_haze_scattering(&m->haze, medium, step, within) / off, 1e-30f));
   }
+}
+
+void abbe_eye_weaken(const abbe_eye_context *c, abbe_eye_path *p, float length) {
+  const int medium = abbe_media_of(p->inside);
+  p->share *= expf(-length * extinction_at(c->w->media, medium, p, p->step, p->within));
+  weigh_beside(c, p, length, false);
 }
 
 /* By the share that is turned on all of the way, at a place that the scattering draws; roulette
@@ -87,6 +98,7 @@ bool abbe_eye_turn(const abbe_eye_context *c, abbe_eye_path *p, float length,
   abbe_eye_random4(c, p->id ^ 0x7475726eu, p->steps, random);
   const float t = abbe_haze_place(off, length, random[0], &density);
   turned->share *= expf(-t * (whole - off));
+  weigh_beside(c, turned, t, true);
   for (int k = 0; k < 3; k++) turned->o[k] += t * p->d[k];
   abbe_haze_turn(h, medium, p->d, random[1], random[2], turned->d);
   turned->wave = random[3] < 0.5f;
