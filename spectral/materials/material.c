@@ -110,23 +110,25 @@ static abbe_result check_curve(const abbe_material *m, const abbe_dispersion *d,
   return ABBE_OK;
 }
 
-/* Three indices ascend at every wavelength, and are such as stones have. */
+/* Indices of a crystal are such as stones have, and three ascend at every wavelength. */
 static abbe_result check_order(const abbe_material *m, abbe_error *error) {
   enum { STEPS = 1000 };
+  const bool three = abbe_material_is_biaxial(m);
   for (int i = 0; i <= STEPS; i++) {
     const double nm = m->min_nm + (m->max_nm - m->min_nm) * i / STEPS,
-                 a = abbe_dispersion_n(&m->outer[0], nm), b = abbe_dispersion_n(&m->dispersion, nm),
-                 c = abbe_dispersion_n(&m->outer[1], nm);
-    if (a > b || b > c)
+                 b = abbe_dispersion_n(&m->dispersion, nm),
+                 a = three ? abbe_dispersion_n(&m->outer[0], nm) : b,
+                 c = abbe_dispersion_n(three ? &m->outer[1] : &m->extraordinary, nm);
+    if (three && (a > b || b > c))
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "%s: its indices are to ascend, alpha <= beta <= gamma; at %g nm they "
                             "are %.6g, %.6g, %.6g",
                             m->name, nm, a, b, c);
-    if (!(a > 0 && c <= 10))
+    if (!(fmin(a, c) > 0 && fmax(a, c) <= 10))
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "%s: an index of a crystal is above 0 and at most 10; at %g nm they "
-                            "are %.6g, %.6g, %.6g",
-                            m->name, nm, a, b, c);
+                            "are %.6g and %.6g",
+                            m->name, nm, a, c);
   }
   return ABBE_OK;
 }
@@ -137,10 +139,10 @@ static abbe_result check_index(const abbe_material *m, abbe_error *error) {
   if (abbe_material_is_biaxial(m)) {
     ABBE_TRY(check_curve(m, &m->outer[0], "alpha's ", error));
     ABBE_TRY(check_curve(m, &m->outer[1], "gamma's ", error));
-    ABBE_TRY(check_order(m, error));
   }
-  if (!abbe_material_is_uniaxial(m)) return ABBE_OK;
-  return check_curve(m, &m->extraordinary, "extraordinary ", error);
+  if (abbe_material_is_uniaxial(m))
+    ABBE_TRY(check_curve(m, &m->extraordinary, "extraordinary ", error));
+  return abbe_material_is_crystal(m) ? check_order(m, error) : ABBE_OK;
 }
 
 /* Of three indices, all are there and real, and there is no second of another kind. */

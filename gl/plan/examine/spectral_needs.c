@@ -185,12 +185,14 @@ static void note_double_image(const abbe_material *m, double lambda_nm, abbe_pla
                  m->name, most * 180 / ABBE_PI, 10 * tan(most));
 }
 
-/* Two of three indices that are alike, and axes that had to be turned. */
+/* Indices that are alike, and axes that had to be turned. */
 static void note_axes(const abbe_object *object, double lambda_nm, abbe_plan *plan) {
   double n[3];
   for (int axis = 0; axis < 3; axis++)
     if (abbe_material_n_along(object->material, axis, lambda_nm, &n[axis], NULL) != ABBE_OK) return;
-  if (abbe_material_is_biaxial(object->material) && (n[0] == n[1] || n[1] == n[2]))
+  if (n[0] == n[1] && n[1] == n[2])
+    abbe_plan_note(plan, "%s: its indices are equal: it is no crystal", object->material->name);
+  else if (abbe_material_is_biaxial(object->material) && (n[0] == n[1] || n[1] == n[2]))
     abbe_plan_note(plan, "%s: two of its three indices are equal: it is a uniaxial crystal",
                    object->material->name);
   if (object->axes_turned > ABBE_PI / 180)

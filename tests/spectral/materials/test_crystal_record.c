@@ -34,7 +34,7 @@ TEST(a_biaxial_crystal_has_three_indices) {
   assert_near(abbe_material_attenuation(&t.material[0], 500), 2, 1e-12);
 }
 
-TEST(three_indices_that_cannot_be_are_refused) {
+TEST(indices_that_cannot_be_are_refused) {
 #define ALPHA "alpha: {model: constant, coefficients: [1.6]}"
 #define GAMMA "gamma: {model: constant, coefficients: [1.7]}"
   const struct {
@@ -48,6 +48,7 @@ TEST(three_indices_that_cannot_be_are_refused) {
        "its indices are to ascend, alpha <= beta <= gamma; at 1 nm they are 1.6, 1.65, 1.5"},
       {"biaxial: {" ALPHA ", gamma: {model: constant, coefficients: [11]}}",
        "an index of a crystal is above 0 and at most 10"},
+      {"extraordinary: {model: constant, coefficients: [11]}", "an index of a crystal is above 0"},
       {"biaxial: {" ALPHA ", gamma: {model: tabulated, points: [[450, 1.8], [800, 1.7]]}}",
        "wider than those of its index gamma, which reach from 450 to 800 nm"},
       {"biaxial: {" ALPHA ", gamma: {model: constant, coefficients: [1.7], range_nm: [1, 2]}}",

@@ -153,6 +153,10 @@ TEST(double_images_are_noted) {
       {TWO("1.5442", "1.5533"), "largest walk-off 0.337 degrees"},
       {TWO("1.925", "1.984"), "largest walk-off 1.729 degrees"},
       {TWO("2.616", "2.903"), "largest walk-off 5.954 degrees"},
+      {TWO("1.6", "1.6"), "its indices are equal: it is no crystal"},
+      {"[1.6], biaxial: {alpha: {model: constant, coefficients: [1.6]}, gamma: {model: constant, "
+       "coefficients: [1.7]}}",
+       "two of its three indices are equal: it is a uniaxial crystal"},
       {"[1.6], biaxial: {alpha: {model: constant, coefficients: [1.48613]}, gamma: {model: "
        "constant, coefficients: [1.65834]}}",
        "largest walk-off 6.269 degrees"}};
