@@ -122,7 +122,7 @@ abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan
                                         abbe_error *error);
 
 /* The number of the film on each of a convex solid's planes, as coatings have it; film may be NULL.
- * False where a plane has faces of different films: then that of one. */
+ * False where a plane has faces of different films: it is bare then. */
 bool abbe_refractor_films(const abbe_object *object, uint8_t *film);
 
 /* Notes what is left out where light is not followed from one to another. */

@@ -36,7 +36,7 @@ bool abbe_refractor_films(const abbe_object *object, uint8_t *film) {
   for (size_t i = 0; i < c->face_count; i++) {
     const size_t plane = plane_of(object, i);
     alike = alike && (!known[plane] || found[plane] == c->face[i]);
-    found[plane] = c->face[i];
+    found[plane] = known[plane] && found[plane] != c->face[i] ? 0 : c->face[i];
     known[plane] = true;
   }
   if (film != NULL) memcpy(film, found, object->exact.count);

@@ -369,8 +369,8 @@ static bool draws_films(const abbe_scene *scene, const abbe_object *object, cons
   size_t r = 0;
   while (r < plan->refractor_count && object_of(scene, plan, r) != object) r++;
   return plan->filmed && r < plan->refractor_count &&
-         (object->coatings->face == NULL || plan->model[r] == ABBE_REFRACTOR_CONVEX ||
-          plan->model[r] == ABBE_REFRACTOR_BVH);
+         (object->coatings->face == NULL || plan->model[r] == ABBE_REFRACTOR_BVH ||
+          (plan->model[r] == ABBE_REFRACTOR_CONVEX && abbe_refractor_films(object, NULL)));
 }
 
 /* What a film reflects head on, in per cent. */

@@ -116,6 +116,27 @@ TEST(light_that_layers_do_not_show_is_noted) {
   }
 }
 
+/* Of names no facets of one plane differ, but faces within rounding of it may. */
+TEST(faces_of_one_plane_may_have_films_of_their_own) {
+  OWNED(abbe_scene, scene) = scene_of(
+      CAMERA POINT_LIGHT FLOOR BRICK("crown, coating: {layers: [[2.4, 120]], faces: girdle}"));
+  const abbe_render_desc layers = {.model = ABBE_MODEL_LAYERS};
+  for (int differ = 0; differ < 2; differ++) {
+    MADE(abbe_plan, auto_plan, abbe_plan_make(&scene, NULL, &auto_plan, &error));
+    MADE(abbe_plan, plan, abbe_plan_make(&scene, &layers, &plan, &error));
+    assert_int_equal(auto_plan.model[0], differ ? ABBE_REFRACTOR_BVH : ABBE_REFRACTOR_CONVEX);
+    assert_int_equal(plan.model[0], ABBE_REFRACTOR_CONVEX);
+    assert_false(is_noted(&auto_plan, "it is drawn bare"));
+    assert_int_equal(is_noted(&plan, "it is drawn bare"), differ);
+    abbe_coatings *c = scene.object[1].coatings;
+    for (size_t f = 0; f < c->face_count && !differ; f++)
+      if (c->face[f] != 0) {
+        c->face[f] = 0;
+        break;
+      }
+  }
+}
+
 TEST(convex_meshes_are_known) {
   MADE(abbe_mesh, mesh, abbe_shape_sphere(2, 3, &mesh, &error));
   assert_true(abbe_mesh_is_convex(&mesh));
