@@ -130,7 +130,8 @@ static abbe_result derive(const place *p, const abbe_gem_stone *stone, const abb
       by_tier(p, stone, s, unit, by);
     else
       result = by_side(p, stone, (int)s, by, error);
-    if (result == ABBE_OK) out[s] = abbe_gem_slope_by(slope, (const double(*)[4])by);
+    if (result == ABBE_OK)
+      out[s] = abbe_gem_slope_by(slope, &(abbe_gem_change){.plane = (const double(*)[4])by});
   }
   free(by);
   free(unit);

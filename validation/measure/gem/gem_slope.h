@@ -1,4 +1,5 @@
-/* gem_slope.h: a measure of a cut stone, and how it changes with every plane of the cut.
+/* gem_slope.h: a measure of a cut stone, and how it changes with every plane of the cut and
+ * with its material.
  *
  * Seen from far away, light that meets the same facets in the same order goes the same ways, so
  * that along a line across the view what returns is constant but where a facet's image ends. Each
@@ -20,7 +21,7 @@
 enum { ABBE_GEM_SLOPE_REPEATS = 8, ABBE_GEM_SLOPE_MEETINGS = 64 };
 
 typedef struct abbe_gem_slope_desc {
-  abbe_gem_amount measure; /* ISO, COS, GEMRAY_*, RETURN or DOWN */
+  abbe_gem_amount measure; /* ISO, COS, GEMRAY_*, RETURN or DOWN; AMOUNT_COUNT: fire alone */
   /* so much is added of the degrees by which an exit above the horizon is spread, times its share;
    * spread: what the index grows by from the line C to F */
   double fire, spread;
@@ -40,7 +41,17 @@ typedef struct abbe_gem_slope {
   double sum[ABBE_GEM_SLOPE_REPEATS], area[ABBE_GEM_SLOPE_REPEATS];
   /* [repeats][planes] of the stone's: of sum and of area by n and d of n . x = d; owned */
   double (*by_sum)[4], (*by_area)[4];
+  size_t wavelengths;
+  /* [repeats][wavelengths] of sum by the index, and by the loss a unit of length; owned */
+  double *by_n, *by_loss, by_spread[ABBE_GEM_SLOPE_REPEATS];
 } abbe_gem_slope;
+
+/* How a stone changes: each plane's n and d, its index and its loss a unit of length at each
+ * wavelength, and what the index grows by from C to F. NULL: not. */
+typedef struct abbe_gem_change {
+  const double (*plane)[4], *n, *loss;
+  double spread;
+} abbe_gem_change;
 
 /* weights: in XYZ, of the stone's wavelengths. ABBE_UNSUPPORTED for another measure,
  * ABBE_INVALID_ARGUMENT for more meetings than ABBE_GEM_SLOPE_MEETINGS, what
@@ -51,7 +62,7 @@ abbe_result abbe_gem_slope_make(const abbe_gem_stone *stone, const abbe_weights 
 /* Safe on a zeroed one. */
 void abbe_gem_slope_free(abbe_gem_slope *slope);
 
-/* The derivative while the planes move so: by[planes] is that of each plane's n and d. */
-abbe_gem_number abbe_gem_slope_by(const abbe_gem_slope *slope, const double (*by)[4]);
+/* The derivative while the stone changes so. */
+abbe_gem_number abbe_gem_slope_by(const abbe_gem_slope *slope, const abbe_gem_change *change);
 
 #endif

@@ -54,6 +54,9 @@ static double shine(const abbe_gem_stretch *w, const double out[3], double by[3]
   double rise = 0, rim = 0, value;
   const double e = abbe_vector_dot(out, eye), up = above(out[2], 0, soft_rad, &rise);
   switch (w->q->measure) {
+  case ABBE_GEM_AMOUNT_COUNT:
+    value = rise = 0;
+    break;
   case ABBE_GEM_ISO:
     value = up;
     break;
@@ -261,6 +264,27 @@ static double fresnel_slope(double cosine, double eta) {
   return t > 0 ? s * s_by + p * p_by : 0;
 }
 
+/* Of the cosine behind the face by eta. */
+static double bent_by_eta(double cosine, double eta) {
+  const double t = bent(cosine, eta);
+  return t > 0 ? -eta * (1 - cosine * cosine) / t : 0;
+}
+
+static double fresnel_by_eta(double cosine, double eta) {
+  const double t = bent(cosine, eta), by = bent_by_eta(cosine, eta);
+  const double s = (eta * cosine - t) / (eta * cosine + t);
+  const double p = (cosine - eta * t) / (cosine + eta * t);
+  const double s_by = 2 * cosine * (t - eta * by) / pow(eta * cosine + t, 2);
+  const double p_by = -2 * cosine * (t + eta * by) / pow(cosine + eta * t, 2);
+  return t > 0 ? s * s_by + p * p_by : 0;
+}
+
+/* Of a refracted direction by eta, along what counts of it. */
+static double refract_by_eta(const double d[3], const double n[3], double cosine, double eta,
+                             const double out[3]) {
+  return abbe_vector_dot(out, d) + (bent_by_eta(cosine, eta) - cosine) * abbe_vector_dot(out, n);
+}
+
 /* What is traced back: derivatives by what goes on from a meeting. */
 typedef struct back {
   double p[3], d[3], d_blue[3], share;
@@ -299,44 +323,55 @@ static void back_ray(const double d[3], const double n[3], double cosine, double
 
 /* With `lit` the stretch's value, without it what b has of the place of meeting `from`. */
 static void trace_back(const abbe_gem_stretch *w, size_t from, bool lit, double weight, back *b,
-                       double (*by)[4]) {
+                       abbe_gem_stretch_by *by) {
   for (size_t i = from; i > 0; i--) {
     const abbe_gem_meeting *m = &w->at[i];
     const double *plane = w->stone->plane[m->plane], n = w->n;
     double own[4] = {0}, out[3] = {0}, blue[3] = {0}, by_cosine = 0, way = 0;
     if (lit) {
       const double left = 1 - m->reflected;
-      if (left > 0) by_cosine = m->share * (b->share - m->light) * fresnel_slope(m->cosine, n);
+      const double by_reflected = left > 0 ? m->share * (b->share - m->light) : 0;
+      by_cosine = by_reflected * fresnel_slope(m->cosine, n);
+      by->n += weight * by_reflected * fresnel_by_eta(m->cosine, n);
       add(out, m->share * left, m->by_out);
       add(blue, m->share * left, m->by_blue);
       const double arrives = left * m->light + m->reflected * b->share;
       way = -w->loss * m->share * arrives;
+      by->loss -= weight * m->way * m->share * arrives;
+      by->n += weight * refract_by_eta(m->d, plane, m->cosine, n, out);
       b->share = arrives * (w->loss > 0 ? exp(-w->loss * m->way) : 1);
     }
     back_ray(m->d, plane, m->cosine, n, out, by_cosine, b->d, own);
-    if (lit && w->q->fire != 0)
+    if (lit && w->q->fire != 0) {
+      by->spread += weight * refract_by_eta(m->d_blue, plane, m->cosine_blue, w->n_blue, blue);
       back_ray(m->d_blue, plane, m->cosine_blue, w->n_blue, blue, 0, b->d_blue, own);
+    }
     back_place(plane, m->d, m->p, m->way, way, b, b->d, own);
-    for (int k = 0; k < 4; k++) by[m->plane][k] += weight * own[k];
+    for (int k = 0; k < 4; k++) by->plane[m->plane][k] += weight * own[k];
   }
   const abbe_gem_meeting *m = &w->at[0];
   const double *plane = w->stone->plane[m->plane];
   const double in[3] = {-plane[0], -plane[1], -plane[2]};
-  double own[4] = {0}, by_in[3] = {0}, unused[3] = {0}, by_cosine = 0;
+  double own[4] = {0}, by_in[3] = {0}, unused[3] = {0}, by_cosine = 0, by_in_n = 0;
   if (lit) {
     by_cosine = (m->light - b->share) * fresnel_slope(m->cosine, 1 / w->n);
+    by_in_n = (m->light - b->share) * fresnel_by_eta(m->cosine, 1 / w->n);
+    by->spread -= weight * refract_by_eta(w->sight, in, m->cosine, 1 / w->n_blue, b->d_blue) /
+                  (w->n_blue * w->n_blue);
     by_cosine += 2 * m->reflected * abbe_vector_dot(m->by_out, plane);
     add(own, 2 * m->cosine * m->reflected, m->by_out);
     back_refract(in, m->cosine, 1 / w->n_blue, b->d_blue, unused, by_in, &by_cosine);
   }
+  by_in_n += refract_by_eta(w->sight, in, m->cosine, 1 / w->n, b->d);
+  by->n -= weight * by_in_n / (w->n * w->n);
   back_refract(in, m->cosine, 1 / w->n, b->d, unused, by_in, &by_cosine);
   add(own, -1, by_in);
   add(own, -by_cosine, w->sight);
   back_place(plane, w->sight, m->p, 0, 0, b, unused, own);
-  for (int k = 0; k < 4; k++) by[m->plane][k] += weight * own[k];
+  for (int k = 0; k < 4; k++) by->plane[m->plane][k] += weight * own[k];
 }
 
-void abbe_gem_stretch_light(abbe_gem_stretch *w, double t, double weight, double (*by)[4]) {
+void abbe_gem_stretch_light(abbe_gem_stretch *w, double t, double weight, abbe_gem_stretch_by *by) {
   back b = {0};
   move_to(w, t);
   w->value = w->at[0].reflected * w->at[0].light;
@@ -346,14 +381,14 @@ void abbe_gem_stretch_light(abbe_gem_stretch *w, double t, double weight, double
   w->drift = abbe_vector_dot(b.p, w->line);
 }
 
-void abbe_gem_stretch_move(abbe_gem_stretch *w, bool high, double jump, double (*by)[4]) {
+void abbe_gem_stretch_move(abbe_gem_stretch *w, bool high, double jump, abbe_gem_stretch_by *by) {
   const size_t at = high ? w->high_at : w->low_at, i = high ? w->high_plane : w->low_plane;
   const double *plane = w->stone->plane[i];
   move_to(w, high ? w->high : w->low);
   const double speed = jump / abbe_vector_dot(plane, w->at[at].v);
   back b = {0};
   add(b.p, -speed, plane);
-  add(by[i], -speed, w->at[at].p);
-  by[i][3] += speed;
+  add(by->plane[i], -speed, w->at[at].p);
+  by->plane[i][3] += speed;
   trace_back(w, at, false, 1, &b, by);
 }

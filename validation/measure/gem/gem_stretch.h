@@ -8,6 +8,12 @@
 
 #include "validation/measure/gem/gem_slope.h"
 
+/* Derivatives that are added up: by each plane's n and d, by the wavelength's index, by how much
+ * larger the bluer one's is, and by the loss. */
+typedef struct abbe_gem_stretch_by {
+  double (*plane)[4], n, spread, loss;
+} abbe_gem_stretch_by;
+
 typedef struct abbe_gem_meeting {
   size_t plane;
   double p[3], v[3];      /* the place, and its speed along the line */
@@ -36,8 +42,10 @@ typedef struct abbe_gem_stretch {
  * says from where to where it is so. The rest of what is above `count` is given. */
 void abbe_gem_stretch_follow(abbe_gem_stretch *stretch, const double o[3]);
 /* Goes to a place of it, and sets value and drift; adds what all of it changes by, weighted. */
-void abbe_gem_stretch_light(abbe_gem_stretch *stretch, double t, double weight, double (*by)[4]);
+void abbe_gem_stretch_light(abbe_gem_stretch *stretch, double t, double weight,
+                            abbe_gem_stretch_by *by);
 /* Adds what an end, the high or the low one, moves by times the jump of the line's light there. */
-void abbe_gem_stretch_move(abbe_gem_stretch *stretch, bool high, double jump, double (*by)[4]);
+void abbe_gem_stretch_move(abbe_gem_stretch *stretch, bool high, double jump,
+                           abbe_gem_stretch_by *by);
 
 #endif
