@@ -24,7 +24,7 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(render, "render a stone or a scene to OpenEXR and to a picture for a display")                 \
   X(view, "show it in a window: turn it, change it, see the light follow")                         \
   X(trace, "trace the reference: what light really does, with standard errors")                    \
-  X(derive, "say how a caustic changes with scalars of its scene: the map's derivatives")          \
+  X(derive, "say how a picture or a caustic changes with numbers of its scene")                    \
   X(gem, "say what a gem's design holds, draw it, report on it, convert it, change its angles")    \
   X(plan, "say which passes and models a scene asks for, and why")                                 \
   X(export, "write a scene for pbrt, glTF, Blender or POV-Ray")                                    \

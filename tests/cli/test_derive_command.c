@@ -57,12 +57,41 @@ TEST(a_map_has_layers_of_each_key) {
     assert_true(abbe_image_find_channel(&image, layers[i]) < image.channels);
 }
 
+/* All light is the lamp's, of 1 W/sr: by its power the picture is its own derivative. */
+TEST(a_picture_by_its_lamps_power) {
+  HELD(cJSON, json) = run_json(DERIVE "--by lights.lamp.intensity "
+                                      "--lines 64 --size 8x8 --spp 4 -o picture.exr --json",
+                               0);
+  const cJSON *rows = json_item(json, "rows"), *as_it_is = cJSON_GetArrayItem(rows, 0);
+  const double mean = value(as_it_is, "mean.G", 0);
+  assert_true(mean > 0);
+  assert_near(value(cJSON_GetArrayItem(rows, 1), "mean.G", 0), mean, 1e-6 * mean);
+  MADE(abbe_image, image, abbe_exr_read(run_path("picture.exr"), &image, &error));
+  assert_int_equal(image.width, 8);
+  static const char *const layers[] = {"G", "stderr.G", "lights.lamp.intensity.G",
+                                       "stderr.lights.lamp.intensity.G"};
+  size_t channel[4];
+  for (size_t i = 0; i < 4; i++) {
+    channel[i] = abbe_image_find_channel(&image, layers[i]);
+    assert_true(channel[i] < image.channels);
+  }
+  for (size_t i = 0; i < 64; i++) {
+    const float *pixel = image.data + i * image.channels;
+    assert_near((double)pixel[channel[2]], (double)pixel[channel[0]],
+                1e-5 * fabs((double)pixel[channel[0]]));
+  }
+}
+
 TEST(refusals) {
   run_fails(DERIVE "--by objects.ball.radios", 1, "did you mean 'radius'?");
   run_fails(DERIVE "--by objects.ball.shape", 1, "is no number");
   run_fails(DERIVE "--by lights.lamp.illuminant", 1, "is no number");
   run_fails(DERIVE "--by materials.glas.n", 1, "no refractor is made of 'glas'");
   run_fails(DERIVE "--by objects.ball.radius --map 4096x4096 -o map.exr", 1, "16 million");
+  run_fails(DERIVE "--by objects.ball.radius --size 4096x4096 -o picture.exr", 1, "16 million");
+  run_must("sed 's/^camera: {/camera: {polariser: {kind: linear, angle: 30}, /' ball.yaml >polarised.yaml");
+  run_fails("$abbe derive polarised.yaml --by objects.ball.radius -o picture.exr", 1,
+            "there is a polariser");
   run_fails(DERIVE, 2, "Give --by KEY");
   run_fails(DERIVE "--by objects.ball.radius --lines 64 -q -o gone/map.exr", 1,
             "its folder is not there");

@@ -243,17 +243,18 @@ static abbe_result follow(const ray_row *row, const setting *s, double key,
                           abbe_scene *scene, abbe_specular *out, abbe_specular_hit *hit,
                           abbe_error *error) {
   abbe_specular_wave wave;
-  abbe_specular_tree tree;
+  ABBE_FREED abbe_specular_tree *tree = malloc(sizeof *tree);
+  if (tree == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a ray");
   ABBE_TRY(abbe_known_scene(scene, error, row->objects, s->sun[0], s->sun[1], key, key));
   ABBE_TRY(abbe_specular_make(scene, 0, shift, out, error));
   if (base != NULL) ABBE_TRY(abbe_specular_match(out, base, row->quantity, error));
   ABBE_TRY(abbe_specular_wave_make(out, s->lambda_nm, &wave, error));
   const double up = row->traced == crossing_in_plan ? 0.15 : 0; /* m: over the near wall */
   const double at[4] = {0.5 + row->off, 0.5 + up / (2 * out->radius), 0.5, 0.5};
-  abbe_specular_trace(out, &wave, at, 3, &tree);
+  abbe_specular_trace(out, &wave, at, 3, NULL, tree);
   *hit = (abbe_specular_hit){.p = {NAN, NAN, NAN}};
-  for (size_t i = 0; i < tree.count; i++)
-    if (tree.hit[i].flux > hit->flux) *hit = tree.hit[i];
+  for (size_t i = 0; i < tree->count; i++)
+    if (tree->hit[i].flux > hit->flux) *hit = tree->hit[i];
   return ABBE_OK;
 }
 
@@ -447,5 +448,5 @@ static abbe_result add_edge(abbe_known_run *run, const edge_row *row, abbe_error
 abbe_result abbe_known_derive(abbe_known_run *run, abbe_error *error) {
   for (int i = 0; i < RAYS; i++) ABBE_TRY(add_ray(run, &rays[i], error));
   for (int i = 0; i < EDGES; i++) ABBE_TRY(add_edge(run, &edges[i], error));
-  return ABBE_OK;
+  return abbe_known_pixels(run, error);
 }

@@ -33,6 +33,9 @@ typedef struct abbe_known_run {
 ABBE_KNOWN_GROUPS(ABBE_KNOWN_DECLARE)
 #undef ABBE_KNOWN_DECLARE
 
+/* Derivatives of pixels, the last part of the group `derive`. */
+abbe_result abbe_known_pixels(abbe_known_run *run, abbe_error *error);
+
 /* Adds a row: the caller gives quantity, unit, exact, traced, standard error, tolerance, what of it
  * is useful, and reason; error and verdict are computed (a traced value that is not finite fails).
  */

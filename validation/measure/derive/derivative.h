@@ -1,22 +1,21 @@
 /* derivative.h: how a light's caustic changes with scalars of its scene: the map's texels, and
  * numbers of all that lands.
  *
- * Paths are followed from points of lines across the light's window, in the scene and in ones in
- * which a key is moved by a little both ways. Where both meet the same surfaces, what lands differs
- * smoothly, and by so much the derivative is made. Where from one point of a line to the next the
- * surfaces change, the place where they do is searched for, and how fast it moves: light jumps
- * there by what differs from one side to the other [Li2018]. So edges of facets, borders of total
- * reflection, silhouettes and shadows are in it. What is not: light on paths of more interfaces
- * than asked for, what stands twice or never between two points of a line, and receivers' light on
- * each other. A texel is weighted by a tent that reaches to its neighbours' middles, for a
- * box's own edge would be one more jump.
+ * Paths are followed from points of lines across the light's window (line.h), and over the same
+ * surfaces in scenes in which a key is moved by a little: by so much what lands differs smoothly.
+ * Where from one point of a line to the next the surfaces change, the place where they do is
+ * searched for, and how fast it moves: light jumps there by what differs from one side to the
+ * other [Li2018]. So edges of facets, silhouettes and shadows are in it. What is not: light on
+ * paths of more interfaces than asked for, what stands twice or never between two points of a line,
+ * and receivers' light on each other. A texel is weighted by a tent that reaches to its neighbours'
+ * middles, for a box's own edge would be one more jump.
  */
 #ifndef ABBE_VALIDATION_MEASURE_DERIVE_DERIVATIVE_H
 #define ABBE_VALIDATION_MEASURE_DERIVE_DERIVATIVE_H
 
 #include "base/error.h"
 #include "scenes/view/map_layout.h"
-#include "validation/measure/derive/specular.h"
+#include "validation/measure/derive/line.h"
 #include "validation/trace/transport/spectral_sampling.h"
 
 typedef struct abbe_derivative_key {
@@ -47,6 +46,7 @@ typedef struct abbe_derivative_desc {
   size_t keys;
   const abbe_derivative_key *key; /* [keys] */
   const abbe_spectral_sampling *sampling;
+  const struct abbe_film *film; /* shown.h: of a picture to which what lands is added, or NULL */
   abbe_map_layout layout;
   size_t width, height; /* texels; 0: numbers alone */
   size_t lines, points; /* in all, at least ABBE_DERIVATIVE_PARTS; and of each line */
@@ -58,6 +58,20 @@ typedef struct abbe_derivative_desc {
 } abbe_derivative_desc;
 
 enum { ABBE_DERIVATIVE_PARTS = 16, ABBE_DERIVATIVE_SUMS = 7 };
+
+/* One of the parts, whose spread is the standard error. */
+typedef struct abbe_derivative_part {
+  double (*map)[3];                    /* [1 + keys][texels], owned */
+  double (*sum)[ABBE_DERIVATIVE_SUMS]; /* [1 + keys], owned */
+  double (*picture)[3];                /* [1 + keys][pixels] of the film, or NULL */
+  abbe_line_sums sums;                 /* felt is owned */
+} abbe_derivative_part;
+/* False: no memory; then, too, it is freed. */
+bool abbe_derivative_part_make(const abbe_derivative_desc *desc, abbe_derivative_part *out);
+void abbe_derivative_part_free(abbe_derivative_part *part);
+/* Adds the part of that index. Errors of abbe_specular_wave_make. */
+abbe_result abbe_derivative_part_run(const abbe_derivative_desc *desc, size_t index,
+                                     abbe_derivative_part *to, abbe_error *error);
 
 typedef struct abbe_derivative {
   size_t keys, texels;

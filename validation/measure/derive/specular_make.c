@@ -8,7 +8,7 @@
 #include <string.h>
 
 static const char *refuse_light(const abbe_light *l) {
-  return l->polariser.kind != ABBE_POLARISER_NONE ? "a polariser" : NULL;
+  return l != NULL && l->polariser.kind != ABBE_POLARISER_NONE ? "a polariser" : NULL;
 }
 
 static const char *refuse_object(const abbe_object *o) {
@@ -26,7 +26,7 @@ static const char *refuse_object(const abbe_object *o) {
 
 static abbe_result refuse(const abbe_scene *scene, const abbe_light *light, abbe_error *error) {
   size_t refractors = 0;
-  const char *what = refuse_light(light), *name = light->name;
+  const char *what = refuse_light(light), *name = light != NULL ? light->name : NULL;
   if (what == NULL && scene->medium != NULL) what = "a medium in the air", name = "the scene";
   for (size_t i = 0; i < scene->object_count && what == NULL; i++) {
     what = refuse_object(&scene->object[i]);
@@ -62,8 +62,10 @@ static abbe_result fill(const abbe_object *o, abbe_specular_surface *s, abbe_err
   if (o->exact.kind == ABBE_EXACT_SPHERE) return ABBE_OK;
   if (abbe_specular_has_planes(s)) {
     s->plane = malloc((planes + 1) * sizeof *s->plane);
-    if (s->plane == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for planes");
-    for (size_t i = 0; i < planes; i++) s->plane[i] = (uint32_t)i;
+    s->numbered = malloc((planes + 1) * sizeof *s->numbered);
+    if (s->plane == NULL || s->numbered == NULL)
+      return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for planes");
+    for (size_t i = 0; i < planes; i++) s->plane[i] = s->numbered[i] = (uint32_t)i;
     return ABBE_OK;
   }
   s->triangle = abbe_bvh_triangles(&o->mesh);
@@ -75,7 +77,8 @@ static abbe_result fill(const abbe_object *o, abbe_specular_surface *s, abbe_err
 /* A ball around all refractors and mirrors. */
 static abbe_result surround(abbe_specular *s, abbe_error *error) {
   double low[3], high[3], middle[3], size[3];
-  if (!abbe_scene_bounds(s->scene, true, false, low, high))
+  const bool any = abbe_scene_bounds(s->scene, true, s->light == NULL, low, high);
+  if (!any && s->light != NULL)
     return abbe_error_set(
         error, ABBE_UNSUPPORTED,
         "%s: there is neither a refractor nor a mirror that would throw a caustic",
@@ -85,6 +88,10 @@ static abbe_result surround(abbe_specular *s, abbe_error *error) {
   s->radius = 0.505 * abbe_vector_length(size);
   abbe_scene_bounds(s->scene, true, true, low, high);
   abbe_scene_hold_lights(s->scene, low, high);
+  for (int k = 0; k < 3; k++) {
+    low[k] = fmin(low[k], s->scene->camera.eye[k]);
+    high[k] = fmax(high[k], s->scene->camera.eye[k]);
+  }
   for (int k = 0; k < 3; k++) middle[k] = 0.5 * (low[k] + high[k]) - s->centre[k];
   abbe_vector_subtract(high, low, size);
   s->far = 4 * (abbe_vector_length(size) + abbe_vector_length(middle));
@@ -112,7 +119,9 @@ static abbe_result aim(abbe_specular *s, abbe_error *error) {
 abbe_result abbe_specular_make(const abbe_scene *scene, size_t light,
                                const abbe_specular_shift *shift, abbe_specular *out,
                                abbe_error *error) {
-  abbe_specular s = {.scene = scene, .light = &scene->light[light], .count = scene->object_count};
+  abbe_specular s = {.scene = scene,
+                     .light = light == ABBE_SPECULAR_NO_LIGHT ? NULL : &scene->light[light],
+                     .count = scene->object_count};
   *out = (abbe_specular){0};
   ABBE_TRY(refuse(scene, s.light, error));
   if (shift != NULL) s.shift = *shift;
@@ -121,7 +130,7 @@ abbe_result abbe_specular_make(const abbe_scene *scene, size_t light,
   abbe_result result = s.surface == NULL
                            ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for surfaces")
                            : surround(&s, error);
-  if (result == ABBE_OK) result = aim(&s, error);
+  if (result == ABBE_OK && s.light != NULL) result = aim(&s, error);
   uint32_t refractors = 0;
   for (size_t i = 0; i < s.count && result == ABBE_OK; i++) {
     result = fill(&scene->object[i], &s.surface[i], error);
@@ -138,6 +147,7 @@ abbe_result abbe_specular_make(const abbe_scene *scene, size_t light,
 void abbe_specular_free(abbe_specular *s) {
   for (size_t i = 0; s->surface != NULL && i < s->count; i++) {
     free(s->surface[i].plane);
+    free(s->surface[i].numbered);
     free(s->surface[i].triangle);
     abbe_bvh_free(&s->surface[i].bvh);
   }
@@ -166,6 +176,7 @@ static bool match_planes(abbe_specular_surface *s, const abbe_specular_surface *
     if (taken[best]) return false;
     taken[best] = true;
     s->plane[i] = (uint32_t)best;
+    s->numbered[best] = (uint32_t)i;
   }
   return true;
 }
@@ -181,7 +192,7 @@ abbe_result abbe_specular_match(abbe_specular *s, const abbe_specular *base, con
     else if (same && s->surface[i].triangle != NULL)
       same = a->mesh.face_count == b->mesh.face_count;
   }
-  if (!same || s->light->kind != base->light->kind)
+  if (!same || (s->light != NULL && s->light->kind != base->light->kind))
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "'%s' changes which faces there are, and not only where they lie: it has "
                           "no derivative",

@@ -1,0 +1,147 @@
+#include "validation/measure/derive/line.h"
+#include "validation/measure/derive/specular_meet.h"
+
+#include "base/maths.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct ray {
+  double o[3], d[3];
+  uint64_t inside;
+  uint32_t object, face;
+} ray;
+
+static ray ray_of_step(const abbe_specular_step *s) {
+  ray r = {.inside = s->inside, .object = s->object, .face = s->face};
+  memcpy(r.o, s->o, sizeof r.o);
+  memcpy(r.d, s->d, sizeof r.d);
+  return r;
+}
+
+static ray ray_of_shadow(const abbe_specular_shadow *s) {
+  ray r = {.object = s->object, .face = s->face};
+  memcpy(r.o, s->o, sizeof r.o);
+  memcpy(r.d, s->d, sizeof r.d);
+  return r;
+}
+
+static double way_to(const abbe_specular *s, const ray *r) {
+  abbe_meeting m;
+  return abbe_specular_meet_face(s, r->object, r->face, r->o, r->d, r->inside, &m) ? m.t : INFINITY;
+}
+
+/* The side of a triangle or of a light beyond which the ray lies. */
+static int side_beyond(const abbe_specular *s, uint32_t object, uint32_t face, const ray *past) {
+  abbe_meeting m;
+  if (!abbe_specular_meet_face(s, object, face, past->o, past->d, past->inside, &m)) return 0;
+  if (object >= ABBE_SPECULAR_LAMP) return fabs(m.side[0]) > fabs(m.side[1]) ? 0 : 1;
+  const double third = 1 - m.side[0] - m.side[1];
+  if (third < m.side[0] && third < m.side[1]) return 2;
+  return m.side[0] < m.side[1] ? 0 : 1;
+}
+
+/* Of an object that one ray meets and another misses. */
+static void outline(const abbe_specular *s, const ray *met, const ray *past, abbe_edge *e) {
+  e->object[0] = e->object[1] = met->object;
+  e->face[0] = e->face[1] = met->face;
+  if (met->object >= ABBE_SPECULAR_LAMP) {
+    e->kind = ABBE_EDGE_LAMP;
+    e->side = side_beyond(s, met->object, 0, past);
+    return;
+  }
+  const abbe_specular_surface *of = &s->surface[met->object];
+  double t[2];
+  if (of->object->exact.kind == ABBE_EXACT_SPHERE)
+    e->kind = ABBE_EDGE_OUTLINE;
+  else if (abbe_specular_has_planes(of)) {
+    e->kind = ABBE_EDGE_CROSSING;
+    abbe_specular_cross(of, met->o, met->d, t, e->face);
+  } else {
+    e->kind = ABBE_EDGE_SIDE;
+    e->side = side_beyond(s, met->object, met->face, past);
+  }
+}
+
+static void between_rays(const abbe_specular *s, const ray *a, const ray *b, abbe_edge *e) {
+  const double to_a = way_to(s, a), to_b = way_to(s, b);
+  const bool same = a->object == b->object && a->object < ABBE_SPECULAR_LAMP;
+  if (same && s->surface[a->object].triangle != NULL) {
+    outline(s, a, b, e);
+  } else if (same || fabs(to_a - to_b) < 1e-6 * s->far) {
+    e->kind = ABBE_EDGE_CROSSING;
+    e->object[0] = a->object;
+    e->object[1] = b->object;
+    e->face[0] = a->face;
+    e->face[1] = b->face;
+  } else if (to_a < to_b)
+    outline(s, a, b, e);
+  else
+    outline(s, b, a, e);
+}
+
+abbe_edge abbe_edge_between(const abbe_specular *s, const abbe_specular_tree *below,
+                            const abbe_specular_tree *above) {
+  abbe_edge e = {.kind = ABBE_EDGE_NONE};
+  if (!below->whole || !above->whole) return e;
+  for (size_t i = 0; i < below->steps && i < above->steps; i++) {
+    const ray a = ray_of_step(&below->step[i]), b = ray_of_step(&above->step[i]);
+    e.index = i;
+    if (a.object != b.object ||
+        abbe_specular_face(s, a.object, a.face) != abbe_specular_face(s, b.object, b.face)) {
+      between_rays(s, &a, &b, &e);
+      return e;
+    }
+    const int on = below->step[i].on ^ above->step[i].on;
+    if (on == 0) continue;
+    e.kind = ABBE_EDGE_FAINT;
+    e.side = on == 2;
+    return e;
+  }
+  for (size_t i = 0; i < below->shadows && i < above->shadows; i++) {
+    const ray a = ray_of_shadow(&below->shadow[i]), b = ray_of_shadow(&above->shadow[i]);
+    const bool hidden[2] = {a.object != ABBE_SPECULAR_NOTHING, b.object != ABBE_SPECULAR_NOTHING};
+    if (hidden[0] == hidden[1]) continue;
+    e.index = i;
+    e.shadow = true;
+    outline(s, hidden[0] ? &a : &b, hidden[0] ? &b : &a, &e);
+    return e;
+  }
+  return e;
+}
+
+static double sphere_value(const abbe_exact *e, const ray *r) {
+  double off[3];
+  abbe_vector_subtract(r->o, e->centre, off);
+  const double along = abbe_vector_dot(off, r->d);
+  return e->radius * e->radius - (abbe_vector_dot(off, off) - along * along);
+}
+
+double abbe_edge_value(const abbe_specular *s, const abbe_edge *e, const abbe_specular_tree *tree) {
+  /* The ray to a step that fails is there, and no more. */
+  if (e->shadow ? e->index >= tree->shadows
+                : e->index > tree->steps || (e->index == tree->steps && !tree->failed))
+    return NAN;
+  if (e->kind == ABBE_EDGE_FAINT)
+    return e->index < tree->steps ? tree->step[e->index].sent[e->side] - tree->faint : NAN;
+  const ray r =
+      e->shadow ? ray_of_shadow(&tree->shadow[e->index]) : ray_of_step(&tree->step[e->index]);
+  if (e->kind == ABBE_EDGE_OUTLINE)
+    return sphere_value(&s->surface[e->object[0]].object->exact, &r);
+  abbe_meeting m[2];
+  for (int i = 0; i < 2; i++)
+    if (!abbe_specular_meet_face(s, e->object[i], e->face[i], r.o, r.d, r.inside, &m[i]))
+      return NAN;
+  switch (e->kind) {
+  case ABBE_EDGE_CROSSING:
+    return m[0].t - m[1].t;
+  case ABBE_EDGE_SIDE:
+    return e->side == 2 ? 1 - m[0].side[0] - m[0].side[1] : m[0].side[e->side];
+  case ABBE_EDGE_LAMP:
+    if (s->scene->light[e->object[0] - ABBE_SPECULAR_LAMP].kind == ABBE_LIGHT_DISK)
+      return 1 - m[0].side[0] * m[0].side[0] - m[0].side[1] * m[0].side[1];
+    return 1 - fabs(m[0].side[e->side]);
+  default:
+    return NAN;
+  }
+}
