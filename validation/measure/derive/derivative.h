@@ -8,7 +8,7 @@
  * other [Li2018]. So edges of facets, silhouettes and shadows are in it. What is not: light on
  * paths of more interfaces than asked for, what stands twice or never between two points of a line,
  * and receivers' light on each other. A texel is weighted by a tent that reaches to its neighbours'
- * middles, for a box's own edge would be one more jump.
+ * middles, for a box's own edge would be one more jump. Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_MEASURE_DERIVE_DERIVATIVE_H
 #define ABBE_VALIDATION_MEASURE_DERIVE_DERIVATIVE_H

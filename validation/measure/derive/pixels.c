@@ -1,5 +1,6 @@
 #include "validation/measure/derive/pixels.h"
 
+#include "colorimetry/reflectance/reflected_light.h"
 #include "validation/measure/derive/shown.h"
 #include "validation/trace/transport/random.h"
 
@@ -104,6 +105,27 @@ static void make_colours(work *w) {
   abbe_matrix3_multiply(w->film.from_xyz, scaled, w->film.whiten);
 }
 
+/* Means over the steps of what each channel of every receiver reflects of each light, and of all of
+ * it. */
+static void fill_white(work *w) {
+  const abbe_spectral_sampling *s = w->q->sampling;
+  const abbe_scene *scene = w->q->scene;
+  for (size_t i = 0; i < scene->object_count + 1; i++)
+    for (size_t k = 0; k < s->steps; k++) {
+      double channel[3] = {1, 0, 0};
+      if (i < scene->object_count && abbe_object_kind_of(&scene->object[i]) != ABBE_OBJECT_RECEIVER)
+        break;
+      if (i < scene->object_count)
+        abbe_reflectance_channels(scene->object[i].spectrum,
+                                  0.5 * (s->lambda_nm[k] + s->lambda_nm[k + 1]), channel);
+      for (size_t l = 0; l < scene->light_count; l++)
+        for (int j = 0; j < 3; j++)
+          for (int c = 0; c < 3; c++)
+            w->film.white[i * scene->light_count + l][j][c] +=
+                channel[j] * (double)w->film.colour[l * s->steps + k][c] / (double)s->steps;
+    }
+}
+
 static void free_work(work *w) {
   for (size_t i = 0; w->film.scene != NULL && i <= 2 * w->q->keys; i++)
     abbe_shown_free(&w->film.scene[i]);
@@ -115,6 +137,7 @@ static void free_work(work *w) {
   }
   free(w->film.scene);
   free(w->film.colour);
+  free(w->film.white);
   free(w->lamp);
   free(w->light);
   free(w->moved);
@@ -131,14 +154,17 @@ static abbe_result make_work(const abbe_pixels_desc *q, work *w, abbe_error *err
                        .sampling = q->sampling}};
   w->film.scene = calloc(scenes, sizeof *w->film.scene);
   w->film.colour = calloc(q->sampling->rows * q->sampling->steps, sizeof *w->film.colour);
+  w->film.white = calloc((q->scene->object_count + 1) * lights, sizeof *w->film.white);
   w->lamp = calloc(lights, sizeof *w->lamp);
   w->light = calloc(lights, sizeof *w->light);
   w->moved = calloc(scenes, sizeof *w->moved);
   w->step = calloc(scenes, sizeof *w->step);
   w->film.light = w->light;
-  if (!w->film.scene || !w->film.colour || !w->lamp || !w->light || !w->moved || !w->step)
+  if (!w->film.scene || !w->film.colour || !w->film.white || !w->lamp || !w->light || !w->moved ||
+      !w->step)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the keys' scenes");
   make_colours(w);
+  fill_white(w);
   return make_scenes(w, error);
 }
 

@@ -85,11 +85,10 @@ static void sample_texture(const abbe_image *t, const double uv[2], double out[3
   }
 }
 
-static double reflectance(const abbe_shown *s, const abbe_specular_hit *h, double lambda_nm) {
+/* How much of each channel of reflected_light.h. */
+static void find_share(const abbe_shown *s, const abbe_specular_hit *h, double share[3]) {
   const abbe_object *o = s->specular.surface[h->object].object;
-  double share[3], texel[3] = {1, 1, 1}, sum = 0;
-  abbe_reflectance_channels(o->spectrum, lambda_nm, share);
-  if (o->spectrum != NULL) return share[0];
+  double texel[3] = {1, 1, 1};
   if (o->texture.data != NULL && o->mesh.uv != NULL && o->exact.kind != ABBE_EXACT_SPHERE) {
     const uint32_t *v = o->mesh.face[h->face];
     double uv[2];
@@ -99,8 +98,15 @@ static double reflectance(const abbe_shown *s, const abbe_specular_hit *h, doubl
                h->side[0] * o->mesh.uv[v[1]][k] + h->side[1] * o->mesh.uv[v[2]][k]);
     sample_texture(&o->texture, uv, texel);
   }
-  for (int k = 0; k < 3; k++) sum += share[k] * o->reflectance[k] * texel[k];
-  return sum;
+  for (int k = 0; k < 3; k++)
+    share[k] = o->spectrum != NULL ? (k == 0 ? 1 : 0) : o->reflectance[k] * texel[k];
+}
+
+static double reflectance_of(const abbe_shown *s, const abbe_specular_hit *h, const double share[3],
+                             double lambda_nm) {
+  double channel[3];
+  abbe_reflectance_channels(s->specular.surface[h->object].object->spectrum, lambda_nm, channel);
+  return abbe_vector_dot(share, channel);
 }
 
 void abbe_film_of_hit(const abbe_film *film, size_t scene, double lambda_nm, const double lens[2],
@@ -124,7 +130,9 @@ void abbe_film_of_hit(const abbe_film *film, size_t scene, double lambda_nm, con
   const double pixel = 4 * s->half[0] * s->half[1] / (double)(film->width * film->height);
   h->film[0] = 0.5 * (a / s->half[0] + 1) * (double)film->width;
   h->film[1] = 0.5 * (1 - b / s->half[1]) * (double)film->height;
-  h->film[2] = reflectance(s, h, lambda_nm) / ABBE_PI * fabs(facing) /
+  double share[3];
+  find_share(s, h, share);
+  h->film[2] = reflectance_of(s, h, share, lambda_nm) / ABBE_PI * fabs(facing) /
                (away * away * cosine * cosine * cosine * pixel);
 }
 
@@ -136,23 +144,39 @@ typedef struct leaf {
   const abbe_specular_tree *known;
   abbe_specular_tree *tree;
   size_t scene, hit;
-  double n[3];  /* of a receiver, on the side that is seen */
-  double share; /* of what its light adds */
+  double n[3];       /* of a receiver, on the side that is seen */
+  double share;      /* of the light there that is seen */
+  double channel[3]; /* that it reflects */
+  double reflectance;
+  size_t object; /* that reflects; the scene's count: none */
 } leaf;
 
-static void add(const leaf *f, size_t row, double radiance) {
+/* Colour of a light of power 1: straight ones of all wavelengths, else the line's own. */
+static void colour_of(const leaf *f, size_t row, double out[3]) {
   const abbe_film *film = f->l->film;
-  const float *colour = film->colour[row * film->sampling->steps + f->l->step];
-  for (int c = 0; c < 3; c++) f->tree->shown[c] += f->share * radiance * (double)colour[c];
+  const bool straight = f->tree->hit[f->hit].met == 0;
+  const size_t lights = f->s->specular.scene->light_count;
+  const float *one = film->colour[row * film->sampling->steps + f->l->step];
+  const double(*all)[3] =
+      straight && row < lights ? (const double(*)[3])film->white[f->object * lights + row] : NULL;
+  for (int c = 0; c < 3; c++) {
+    out[c] = all == NULL ? f->reflectance * (double)one[c] : 0;
+    for (int j = 0; j < 3 && all != NULL; j++) out[c] += f->channel[j] * all[j][c];
+  }
+}
+
+static void add(const leaf *f, size_t row, double radiance) {
+  double colour[3];
+  colour_of(f, row, colour);
+  for (int c = 0; c < 3; c++) f->tree->shown[c] += f->share * radiance * colour[c];
 }
 
 /* The first light's spectrum, whose colour becomes white. */
 static void add_white(const leaf *f, double radiance) {
-  const abbe_film *film = f->l->film;
-  const float *colour = film->colour[f->l->step];
+  double colour[3];
+  colour_of(f, 0, colour);
   for (int c = 0; c < 3; c++)
-    for (int k = 0; k < 3; k++)
-      f->tree->shown[c] += f->share * radiance * film->whiten[3 * c + k] * (double)colour[k];
+    f->tree->shown[c] += f->share * radiance * abbe_vector_dot(f->l->film->whiten + 3 * c, colour);
 }
 
 static void add_surroundings(const leaf *f, const double d[3], double share) {
@@ -267,7 +291,8 @@ static void add_caustic(const leaf *f, size_t light) {
     add_texels(q, map + (1 + key) * q->width * q->height, uv, step, xyz);
   }
   abbe_rgb_space_apply(film->from_xyz, xyz, rgb);
-  for (int c = 0; c < 3; c++) f->tree->shown[c] += f->share * facing / (ABBE_PI * area) * rgb[c];
+  const double share = f->share * f->reflectance * facing / (ABBE_PI * area);
+  for (int c = 0; c < 3; c++) f->tree->shown[c] += share * rgb[c];
 }
 
 static void add_receiver(leaf *f) {
@@ -276,7 +301,9 @@ static void add_receiver(leaf *f) {
   const bool straight = h->met == 0;
   const double side = abbe_vector_dot(h->d, h->n) < 0 ? 1 : -1;
   for (int k = 0; k < 3; k++) f->n[k] = side * h->n[k];
-  f->share *= reflectance(f->s, h, f->l->wave[f->scene].lambda_nm);
+  f->object = h->object;
+  find_share(f->s, h, f->channel);
+  f->reflectance = reflectance_of(f->s, h, f->channel, f->l->wave[f->scene].lambda_nm);
   for (size_t i = 0; i < scene->light_count; i++) add_lamp(f, i);
   if (scene->ambient > 0) add_white(f, scene->ambient / ABBE_PI);
   for (size_t i = 0; i < scene->light_count && !straight; i++) add_caustic(f, i);
@@ -287,6 +314,8 @@ static void add_leaf(leaf *f) {
   const abbe_scene *scene = f->s->specular.scene;
   const abbe_specular_hit *h = &f->tree->hit[f->hit];
   f->share = h->flux;
+  f->object = scene->object_count;
+  f->reflectance = f->channel[0] = 1;
   if (h->object == ABBE_SPECULAR_NOTHING) {
     if (h->met == 0 && scene->transparent) return;
     if (scene->background > 0) add_white(f, scene->background);

@@ -24,7 +24,9 @@ typedef struct abbe_shown {
 typedef struct abbe_film {
   size_t width, height, keys, interfaces;
   const abbe_spectral_sampling *sampling;
-  float (*colour)[3]; /* [rows][steps] of the sampling, in the picture's space; owned */
+  float (*colour)[3];    /* [rows][steps] of the sampling, in the picture's space; owned */
+  double (*white)[3][3]; /* [objects + 1][lights] mean over the steps of what each channel of an
+                           object reflects; last of all light, in its first channel; owned */
   double from_xyz[9], whiten[9];
   abbe_shown *scene;                 /* [1 + 2 keys] the base's, each key's down and up; owned */
   const abbe_derivative_desc *light; /* [lights], with a map; a base of NULL: it throws nothing */
