@@ -89,7 +89,8 @@ TEST(refusals) {
   run_fails(DERIVE "--by materials.glas.n", 1, "no refractor is made of 'glas'");
   run_fails(DERIVE "--by objects.ball.radius --map 4096x4096 -o map.exr", 1, "16 million");
   run_fails(DERIVE "--by objects.ball.radius --size 4096x4096 -o picture.exr", 1, "16 million");
-  run_must("sed 's/^camera: {/camera: {polariser: {kind: linear, angle: 30}, /' ball.yaml >polarised.yaml");
+  run_must("sed 's/^camera: {/camera: {polariser: {kind: linear, angle: 30}, /' ball.yaml "
+           ">polarised.yaml");
   run_fails("$abbe derive polarised.yaml --by objects.ball.radius -o picture.exr", 1,
             "there is a polariser");
   run_fails(DERIVE, 2, "Give --by KEY");
