@@ -62,13 +62,10 @@ static uint64_t mix_coatings(uint64_t h, const abbe_coatings *c, const abbe_plan
   const size_t count = c != NULL ? c->count : 0;
   MIX(h, count);
   for (size_t i = 0; i < count; i++)
-    for (int k = 0; k < AT; k++) {
-      abbe_film_layer layer[ABBE_FILM_MOST_LAYERS] = {{0}};
-      abbe_coating_at(&c->coating[i],
-                      plan->desc.min_nm + (plan->desc.max_nm - plan->desc.min_nm) * k / (AT - 1),
-                      layer, NULL);
-      h = abbe_digest(h, layer, c->coating[i].count * sizeof *layer);
-    }
+    for (int k = 0; k < AT; k++)
+      h = abbe_coating_digest(h, &c->coating[i],
+                              plan->desc.min_nm +
+                                  (plan->desc.max_nm - plan->desc.min_nm) * k / (AT - 1));
   return h;
 }
 

@@ -58,9 +58,45 @@ void abbe_film_fields(const abbe_film_layer *layer, size_t count, bool reversed,
   }
 }
 
+/* Which of the rising points is below, and how far the next is. */
+static size_t place(const double *x, size_t count, double at, double *part) {
+  size_t i = 0;
+  while (i + 2 < count && x[i + 1] <= at) i++;
+  *part = count < 2 ? 0 : fmin(fmax((at - x[i]) / (x[i + 1] - x[i]), 0), 1);
+  return i;
+}
+
+static void look_up(const abbe_film_table *t, double n_from, double n_to, double cosine,
+                    double lambda_nm, abbe_film_light *out) {
+  const double *share = t->number + t->angles + t->wavelengths;
+  const double ratio = fmax(n_from / n_to, 1),
+               beyond = 1 - (1 - cosine) * (1 + cosine) * ratio * ratio;
+  double part[2];
+  *out = (abbe_film_light){.reflected = {1, 1}};
+  if (beyond < 0) return;
+  const size_t i = place(t->number, t->angles, 1 - (ratio > 1 ? sqrt(beyond) : cosine), &part[0]),
+               k = place(t->number + t->angles, t->wavelengths, lambda_nm, &part[1]);
+  for (int p = 0; p < 2; p++) {
+    double sum[2] = {0};
+    for (size_t corner = 0; corner < 4; corner++) {
+      const size_t a = corner & 1, b = corner >> 1;
+      const double weight = (a ? part[0] : 1 - part[0]) * (b ? part[1] : 1 - part[1]);
+      if (!(weight > 0)) continue; /* there may be no such point */
+      const double *at = share + 4 * ((i + a) * t->wavelengths + k + b) + 2 * p;
+      for (int s = 0; s < 2; s++) sum[s] += weight * at[s];
+    }
+    out->reflected[p] = sum[0];
+    out->transmitted[p] = sum[1];
+  }
+}
+
 void abbe_film_light_at(const abbe_film_layer *layer, size_t count, bool reversed, double n_from,
                         const double to[2], double cos_i, double lambda_nm, abbe_film_light *out) {
   const double c = fmin(fmax(cos_i, 0), 1), kappa = n_from * sqrt((1 - c) * (1 + c));
+  if (count > 0 && layer->table != NULL) {
+    look_up(layer->table, n_from, to[0], c, lambda_nm, out);
+    return;
+  }
   const medium first = {n_from * n_from, n_from * c}, last = medium_of(to[0], to[1], kappa);
   /* E and H where the light leaves, of a wave whose magnetic field is 1 in p */
   double complex field[2][2] = {{1, last.q}, {last.q / last.square, 1}};

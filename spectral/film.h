@@ -15,9 +15,19 @@
 #define ABBE_FILM_MOST_LAYERS 16
 #define ABBE_FILM_MOST_NM 5000 /* thickness of a layer */
 
+/* What a film was measured to do, by the angle in the medium of the lesser index: linear in its
+ * cosine and in wavelength, and held beyond both. The same from either side, which is exact of a
+ * film that absorbs nothing. It has no phases. */
+typedef struct abbe_film_table {
+  size_t angles, wavelengths; /* above 0 */
+  double number[]; /* 1 - cos of the angles, rising; wavelengths, nm, rising; then by angle,
+                      wavelength and s, p: shares reflected and transmitted */
+} abbe_film_table;
+
 typedef struct abbe_film_layer {
-  double n, k; /* n above 0, k >= 0 */
-  double nm;   /* thickness, >= 0 */
+  double n, k;                  /* n above 0, k >= 0 */
+  double nm;                    /* thickness, >= 0 */
+  const abbe_film_table *table; /* of a film's one layer, instead; or NULL */
 } abbe_film_layer;
 
 enum { ABBE_FILM_S, ABBE_FILM_P };

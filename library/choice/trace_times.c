@@ -197,9 +197,7 @@ static unsigned long long hash_crystal(unsigned long long h, const abbe_object *
 static unsigned long long hash_coatings(unsigned long long h, const abbe_coatings *c) {
   for (size_t i = 0; c != NULL && i < c->count; i++)
     for (int k = 0; k < INDEX_STEPS; k++) {
-      abbe_film_layer layer[ABBE_FILM_MOST_LAYERS] = {{0, 0, 0}};
-      abbe_coating_at(&c->coating[i], 380 + 50.0 * k, layer, NULL);
-      h = hash(h, layer, c->coating[i].count * sizeof *layer);
+      h = abbe_coating_digest(h, &c->coating[i], 380 + 50.0 * k);
       if (c->coating[i].alpha > 0) h = hash(h, &c->coating[i].alpha, sizeof c->coating[i].alpha);
     }
   return c != NULL && c->face != NULL ? hash(h, c->face, c->face_count) : h;

@@ -1,7 +1,9 @@
 #include "scenes/coating/coating.h"
 
 #include "base/file.h"
+#include "base/maths.h"
 #include "base/number.h"
+#include "scenes/geometry/digest.h"
 #include "spectral/materials/absorption.h"
 
 #include <ctype.h>
@@ -18,6 +20,7 @@ void abbe_coatings_free(abbe_coatings *c) {
     for (size_t k = 0; k < coating->count; k++) {
       abbe_spectrum_free(coating->layer[k].n);
       abbe_spectrum_free(coating->layer[k].k);
+      free(coating->layer[k].table);
     }
     free(coating->path);
     free(coating->faces);
@@ -34,7 +37,7 @@ const abbe_coating *abbe_coatings_on(const abbe_coatings *c, size_t face) {
 
 static abbe_result layer_at(const abbe_coating_layer *l, double lambda_nm, abbe_film_layer *out,
                             abbe_error *error) {
-  *out = (abbe_film_layer){l->index[0], l->index[1], l->nm};
+  *out = (abbe_film_layer){l->index[0], l->index[1], l->nm, l->table};
   if (l->n != NULL) {
     out->n = abbe_spectrum_at(l->n, lambda_nm);
     out->k = abbe_spectrum_at(l->k, lambda_nm);
@@ -52,6 +55,17 @@ abbe_result abbe_coating_at(const abbe_coating *coating, double lambda_nm,
     ABBE_TRY(layer_at(&coating->layer[i], lambda_nm, &layer[i], error));
   }
   return ABBE_OK;
+}
+
+uint64_t abbe_coating_digest(uint64_t h, const abbe_coating *c, double lambda_nm) {
+  const abbe_film_table *t = c->layer[0].table;
+  abbe_film_layer layer[ABBE_FILM_MOST_LAYERS] = {{0}};
+  if (t != NULL)
+    return abbe_digest(h, t,
+                       sizeof *t + (t->angles + t->wavelengths + 4 * t->angles * t->wavelengths) *
+                                       sizeof *t->number);
+  abbe_coating_at(c, lambda_nm, layer, NULL);
+  return abbe_digest(h, layer, c->count * sizeof *layer);
 }
 
 abbe_result abbe_coating_straight(const abbe_coating *coating, double n, bool inside,
@@ -86,7 +100,7 @@ abbe_result abbe_coating_add(abbe_coating *coating, const abbe_coating_layer *la
   return ABBE_OK;
 }
 
-enum { MOST_BYTES = 1 << 24, MOST_WORDS = 12, MOST_POINTS = 4096, WORD = 64 };
+enum { MOST_BYTES = 1 << 24, MOST_WORDS = 12, MOST_POINTS = 4096, MOST_ANGLES = 1024, WORD = 64 };
 
 static const double most_index = 1000;
 
@@ -239,27 +253,172 @@ static abbe_result read_layer(reading *r, const char *text, double primary_nm,
   return take_thickness(r, thickness, absolute > 0, primary_nm, out);
 }
 
-/* The names of the coatings of layers. */
+/* --- tables --- */
+
+static abbe_result make_table(reading *r, double angles, double wavelengths, abbe_coating *out) {
+  if (!(angles >= 1 && angles <= MOST_ANGLES && wavelengths >= 1 && wavelengths <= MOST_POINTS))
+    return FAIL(r, ABBE_SCHEMA, "a table has 1 to %d angles of 1 to %d wavelengths, not %g of %g",
+                MOST_ANGLES, MOST_POINTS, angles, wavelengths);
+  const size_t a = (size_t)angles, w = (size_t)wavelengths;
+  abbe_film_table *t = calloc(1, sizeof *t + (a + w + 4 * a * w) * sizeof *t->number);
+  if (t == NULL) return FAIL(r, ABBE_NO_MEMORY, "no memory for a table of %zu angles", a);
+  t->angles = a;
+  t->wavelengths = w;
+  out->layer[out->count++] = (abbe_coating_layer){.table = t, .index[0] = 1};
+  return ABBE_OK;
+}
+
+static abbe_result put_angle(reading *r, abbe_film_table *t, size_t i, double degrees) {
+  t->number[i] = 1 - cos(degrees * ABBE_DEGREE);
+  if (degrees >= 0 && degrees <= 90 && (i == 0 || t->number[i] > t->number[i - 1])) return ABBE_OK;
+  return FAIL(r, ABBE_SCHEMA, "the angle %g does not do: angles rise from 0 to 90 degrees",
+              degrees);
+}
+
+static abbe_result put_wavelength(reading *r, abbe_film_table *t, size_t k, double nm) {
+  double *at = t->number + t->angles + k;
+  *at = nm;
+  if (nm > 0 && (k == 0 || nm > at[-1])) return ABBE_OK;
+  return FAIL(r, ABBE_SCHEMA, "%g nm does not do: wavelengths are above 0 and rise", nm);
+}
+
+/* What digits were rounded to more than all light is brought back to it. */
+static abbe_result put_shares(reading *r, abbe_film_table *t, size_t i, size_t k, int p,
+                              const double share[2]) {
+  static const double rounded = 1.001;
+  double *at = t->number + t->angles + t->wavelengths + 4 * (i * t->wavelengths + k) + 2 * p;
+  const double sum = share[0] + share[1], all = fmax(sum, 1);
+  for (int s = 0; s < 2; s++) at[s] = share[s] / all;
+  if (share[0] >= 0 && share[1] >= 0 && sum <= rounded) return ABBE_OK;
+  return FAIL(r, ABBE_SCHEMA,
+              "at %g nm %g %% is reflected and %g %% transmitted; both are 0 or more, and together "
+              "at most 100 %%, or the film would make light",
+              t->number[t->angles + k], 100 * share[0], 100 * share[1]);
+}
+
+static abbe_result read_wave(reading *r, abbe_film_table *t, size_t i, size_t k) {
+  double number[5];
+  for (size_t n = 0; n < 5; n++)
+    if (!number_at(r, n + 1, &number[n]))
+      return FAIL(r, ABBE_PARSE, "WAVE has five numbers: um, Rs, Rp, Ts and Tp%s", "");
+  const double nm = abbe_number_tidy(1000 * number[0]);
+  if (i > 0 && fabs(nm - t->number[t->angles + k]) > 0)
+    return FAIL(r, ABBE_SCHEMA, "%g um: all angles of a table have the same wavelengths",
+                number[0]);
+  ABBE_TRY(put_wavelength(r, t, k, nm));
+  for (int p = 0; p < 2; p++)
+    ABBE_TRY(put_shares(r, t, i, k, p, (const double[]){number[1 + p], number[3 + p]}));
+  return ABBE_OK;
+}
+
+/* Of a COATING.DAT: ANGL and degrees, then its lines of WAVE. Phases are passed over. */
+static abbe_result read_table(reading *r, abbe_coating *out) {
+  size_t angles = 0, waves = 0, i = 0, k = 0;
+  reading ahead = *r;
+  while (next_line(&ahead) && !begins_section(&ahead)) {
+    if (begins(&ahead, "ANGL")) angles++;
+    if (begins(&ahead, "WAVE") && angles == 1) waves++;
+  }
+  ABBE_TRY(make_table(r, (double)angles, (double)waves, out));
+  abbe_film_table *t = out->layer[0].table;
+  while (next_line(r) && !begins_section(r)) {
+    double degrees;
+    if (begins(r, "ANGL") && k == i * waves && number_at(r, 1, &degrees)) {
+      ABBE_TRY(put_angle(r, t, i++, degrees));
+    } else if (begins(r, "WAVE") && k < i * waves) {
+      ABBE_TRY(read_wave(r, t, i - 1, k % waves));
+      k++;
+    } else {
+      return FAIL(r, ABBE_PARSE,
+                  "'%s' does not fit: a table is lines ANGL and degrees, each before as many lines "
+                  "of WAVE",
+                  r->word[0]);
+    }
+  }
+  if (k == angles * waves) return ABBE_OK;
+  return FAIL(r, ABBE_PARSE, "the table's last angle has %zu lines of WAVE, and its first %zu",
+              waves - (angles * waves - k), waves);
+}
+
+static abbe_result next_number(reading *r, double *out) {
+  for (; isspace((unsigned char)*r->at); r->at++) r->line += *r->at == '\n';
+  const char *end = r->at;
+  if (*r->at != '\0' && abbe_number_read(r->at, &end, out) && isfinite(*out) &&
+      (*end == '\0' || isspace((unsigned char)*end))) {
+    r->at = end;
+    return ABBE_OK;
+  }
+  const size_t length = strcspn(r->at, " \t\r\n");
+  return FAIL(r, ABBE_PARSE,
+              "'%.*s' is no number; a table .coated is, from its third line: how "
+              "many angles and wavelengths, the wavelengths, and for each angle R and T of p, then "
+              "of s, in per cent",
+              (int)(length < WORD ? length : WORD), r->at);
+}
+
+static bool is_coated(const char *text) {
+  const char *title = strstr(text, "oated surface file");
+  return title != NULL && title < text + strcspn(text, "\r\n");
+}
+
+/* A file of Speos: a title, a remark, then numbers alone. */
+static abbe_result read_coated(reading *r, const char *text, abbe_coating *out) {
+  double angles, wavelengths, number[2];
+  if (!is_coated(text))
+    return FAIL(r, ABBE_PARSE, "it begins '%.*s', and not 'OPTIS - Coated surface file'",
+                (int)strcspn(text, "\r\n") < WORD ? (int)strcspn(text, "\r\n") : WORD, text);
+  r->at = text;
+  for (r->line = 1; r->line < 3 && *r->at != '\0'; r->at++) r->line += *r->at == '\n';
+  ABBE_TRY(next_number(r, &angles));
+  ABBE_TRY(next_number(r, &wavelengths));
+  ABBE_TRY(make_table(r, angles, wavelengths, out));
+  abbe_film_table *t = out->layer[0].table;
+  for (size_t k = 0; k < t->wavelengths; k++) {
+    ABBE_TRY(next_number(r, &number[0]));
+    ABBE_TRY(put_wavelength(r, t, k, number[0]));
+  }
+  for (size_t i = 0; i < t->angles; i++) {
+    ABBE_TRY(next_number(r, &number[0]));
+    ABBE_TRY(put_angle(r, t, i, number[0]));
+    for (size_t n = 0; n < 2 * t->wavelengths; n++) {
+      for (int s = 0; s < 2; s++) {
+        ABBE_TRY(next_number(r, &number[s]));
+        number[s] /= 100;
+      }
+      const bool p_first = n < t->wavelengths;
+      ABBE_TRY(
+          put_shares(r, t, i, n % t->wavelengths, p_first ? ABBE_FILM_P : ABBE_FILM_S, number));
+    }
+  }
+  if (r->at[strspn(r->at, " \t\r\n")] == '\0') return ABBE_OK;
+  return FAIL(r, ABBE_PARSE, "it goes on behind its %zu angles of %zu wavelengths", t->angles,
+              t->wavelengths);
+}
+
+/* --- files --- */
+
+/* The names of the coatings that are read. */
 static void list(reading *r, const char *text, char *out, size_t size) {
   size_t used = 0;
   out[0] = '\0';
   r->at = text;
   r->line = 0;
   while (next_line(r))
-    if (begins(r, "COAT") && r->words > 1 && used + WORD + 3 < size)
+    if ((begins(r, "COAT") || begins(r, "TABLE")) && r->words > 1 && used + WORD + 3 < size)
       used += (size_t)snprintf(out + used, size - used, "%s%s", used > 0 ? ", " : "", r->word[1]);
 }
 
 static abbe_result read_coating(reading *r, const char *text, const char *name, double primary_nm,
                                 const abbe_material_table *table, abbe_coating *out) {
-  static const char *const others[] = {"TABLE", "IDEAL", "IDEAL2"};
+  static const char *const others[] = {"IDEAL", "IDEAL2"};
   char names[400];
-  for (int i = 0; i < 3; i++)
+  for (int i = 0; i < 2; i++)
     if (find(r, text, others[i], name))
       return FAIL(r, ABBE_UNSUPPORTED,
-                  "'%s' is of the kind %s, which says nothing of the other side of its film; only "
-                  "COAT is read, which lists layers",
+                  "'%s' is of the kind %s, the same at all angles; COAT, which lists layers, and "
+                  "TABLE are read",
                   name, others[i]);
+  if (find(r, text, "TABLE", name)) return read_table(r, out);
   if (!find(r, text, "COAT", name)) {
     list(r, text, names, sizeof names);
     return abbe_error_set(r->error, ABBE_NOT_FOUND, "%.300s has no coating '%s'; it has %s",
@@ -272,23 +431,25 @@ static abbe_result read_coating(reading *r, const char *text, const char *name, 
   return FAIL(r, ABBE_SCHEMA, "the coating '%s' has no layers", name);
 }
 
-abbe_result abbe_coating_dat_read(const char *path, const char *name, double primary_nm,
-                                  const abbe_material_table *table, abbe_coating *out,
-                                  abbe_error *error) {
+abbe_result abbe_coating_file_read(const char *path, const char *name, double primary_nm,
+                                   const abbe_material_table *table, abbe_coating *out,
+                                   abbe_error *error) {
   ABBE_FREED char *text = NULL;
   size_t size = 0;
   const char *ending = strrchr(path, '.');
+  reading r = {.path = path, .error = error, .line = 1};
   if (ending != NULL && strcasecmp(ending, ".zec") == 0)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%.300s is an encrypted coating, which only its maker's program reads: "
                           "ask the maker for its layers, as a COATING.DAT has them",
                           path);
-  if (ending != NULL && strcasecmp(ending, ".coated") == 0)
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "%.300s is a table of reflectances for one side, without layers; a "
-                          "COATING.DAT with the layers themselves can be read",
-                          path);
   ABBE_TRY(abbe_file_read_text(path, MOST_BYTES, &text, &size, error));
-  reading r = {.path = path, .error = error};
+  if ((ending != NULL && strcasecmp(ending, ".coated") == 0) || is_coated(text))
+    return read_coated(&r, text, out);
+  if (name == NULL)
+    return abbe_error_set(error, ABBE_SCHEMA,
+                          "which coating of %.300s? Say its name beside the file, such as 'name: "
+                          "AR'",
+                          path);
   return read_coating(&r, text, name, primary_nm, table, out);
 }

@@ -1,8 +1,8 @@
 /* coating.h: thin films on an object that refracts, on all of it or on named facets, and how rough
  * such facets are.
  *
- * A stack of isotropic layers, from outside in (spectral/film.h). It is the same film from either
- * side. Files of coatings are read here as well.
+ * A stack of isotropic layers, from outside in, or a table of what a film was measured to do
+ * (spectral/film.h). It is the same film from either side. Files of coatings are read here as well.
  */
 #ifndef ABBE_SCENES_COATING_COATING_H
 #define ABBE_SCENES_COATING_COATING_H
@@ -20,6 +20,7 @@
 typedef struct abbe_coating_layer {
   const abbe_material *material; /* of the scene's table, or NULL: */
   abbe_spectrum *n, *k;          /* of a coating file, owned; or NULL: */
+  abbe_film_table *table;        /* of a file, owned, the coating's one layer; or NULL: */
   double index[2];               /* n and k at all wavelengths */
   double nm;                     /* thickness */
 } abbe_coating_layer;
@@ -52,19 +53,23 @@ const abbe_coating *abbe_coatings_on(const abbe_coatings *coatings, size_t face)
 abbe_result abbe_coating_at(const abbe_coating *coating, double lambda_nm,
                             abbe_film_layer layer[ABBE_FILM_MOST_LAYERS], abbe_error *error);
 
+/* Mixes into the digest h what the coating is at lambda_nm. */
+uint64_t abbe_coating_digest(uint64_t h, const abbe_coating *coating, double lambda_nm);
+
 /* Unpolarised shares of light at normal incidence on an object of index n in air, from outside or
  * inside. */
 abbe_result abbe_coating_straight(const abbe_coating *coating, double n, bool inside,
                                   double lambda_nm, double *reflected, double *transmitted,
                                   abbe_error *error);
 
-/* The named coating of a COATING.DAT, which is text: MATE and COAT; thicknesses that are waves
- * count at primary_nm, and are refused where it is 0. A material that the file lacks is looked for
- * in the table. ABBE_NOT_FOUND lists the names; ABBE_UNSUPPORTED by name for tables of reflectance,
- * ideal coatings, loops, tapers and encrypted files; ABBE_PARSE with the line. */
-abbe_result abbe_coating_dat_read(const char *path, const char *name, double primary_nm,
-                                  const abbe_material_table *table, abbe_coating *out,
-                                  abbe_error *error);
+/* The named coating of a COATING.DAT, which is text: MATE, COAT and TABLE; thicknesses that are
+ * waves count at primary_nm, and are refused where it is 0. A material that the file lacks is
+ * looked for in the table. Or the one coating of a file .coated, where name may be NULL.
+ * ABBE_NOT_FOUND lists the names; ABBE_UNSUPPORTED by name for ideal coatings, loops, tapers and
+ * encrypted files; ABBE_PARSE with the line. */
+abbe_result abbe_coating_file_read(const char *path, const char *name, double primary_nm,
+                                   const abbe_material_table *table, abbe_coating *out,
+                                   abbe_error *error);
 
 /* Adds a layer of that material; one that is a crystal is refused by name, as is one too many. */
 abbe_result abbe_coating_add(abbe_coating *coating, const abbe_coating_layer *layer,

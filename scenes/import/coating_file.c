@@ -92,16 +92,15 @@ static abbe_result read_file(const abbe_object_reading *r, abbe_yaml_node node,
                              abbe_error *error) {
   char *file = NULL, *name = NULL;
   double primary_nm = 0;
-  abbe_yaml_node ignored;
   abbe_result result = abbe_yaml_get_string(r->yaml, node, "file", &file, error);
-  if (result == ABBE_OK) result = abbe_yaml_require(r->yaml, node, "name", &ignored, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_string(r->yaml, node, "name", &name, error);
+  if (result == ABBE_OK && abbe_yaml_get(r->yaml, node, "name").id != 0)
+    result = abbe_yaml_get_string(r->yaml, node, "name", &name, error);
   if (result == ABBE_OK && abbe_yaml_get(r->yaml, node, "primary").id != 0)
     result = abbe_yaml_get_number(r->yaml, node, "primary", 100, 10000, &primary_nm, error);
   if (result == ABBE_OK && (out->path = abbe_scene_value_path(r->folder, file)) == NULL)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
   if (result == ABBE_OK) {
-    result = abbe_coating_dat_read(out->path, name, primary_nm, table, out, error);
+    result = abbe_coating_file_read(out->path, name, primary_nm, table, out, error);
     if (result != ABBE_OK) abbe_scene_value_locate(r->yaml, node, result, error);
   }
   free(file);
@@ -208,6 +207,15 @@ abbe_result abbe_object_read_coating(const abbe_object_reading *r, const abbe_ma
     return abbe_yaml_fail(r->yaml, node, error,
                           "'coating' is on what refracts; this object has no 'material'");
   ABBE_TRY(read_all(r, "coating", table, read_one, &out->coatings, error));
+  for (size_t i = 0; out->coatings != NULL && i < out->coatings->count; i++)
+    if (out->coatings->coating[i].layer[0].table != NULL && abbe_material_is_crystal(out->material))
+      return abbe_scene_value_locate(
+          r->yaml, node,
+          abbe_error_set(error, ABBE_UNSUPPORTED,
+                         "a table of reflectances is for glass, and '%s' is a crystal: give its "
+                         "film as layers",
+                         out->material->name),
+          error);
   return out->material != NULL ? read_all(r, "roughness", table, read_alpha, &out->roughness, error)
                                : ABBE_OK;
 }

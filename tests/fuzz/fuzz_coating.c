@@ -5,11 +5,24 @@
 
 #include <math.h>
 
-const char *const fuzz_words[] = {"\nMATE MGF2\n", "\nCOAT AR\n", "\nCOAT THICK\n",
-                                  "MGF2 0.25\n",   "MGF2 .1 1\n", "narrow 0.25\n",
-                                  "0.5 1.5 -2\n",  "\nTAPR A\n",  "\nTABLE AR\n",
-                                  "IDEAL AR 1 0",  "!",           "\r\n",
-                                  "1e300",         NULL};
+const char *const fuzz_words[] = {
+    "\nMATE MGF2\n",
+    "\nCOAT AR\n",
+    "\nCOAT THICK\n",
+    "MGF2 0.25\n",
+    "MGF2 .1 1\n",
+    "narrow 0.25\n",
+    "0.5 1.5 -2\n",
+    "\nTAPR A\n",
+    "\nTABLE AR\n",
+    "ANGL 30\n",
+    "WAVE .5 .1 .1 .9 .9\n",
+    "OPTIS - Coated surface file v1.0\n\n2 1\n500\n0 4 96 4 96\n90 100 0 100 0\n",
+    "IDEAL AR 1 0",
+    "!",
+    "\r\n",
+    "1e300",
+    NULL};
 
 static const char glass[] = "materials:\n"
                             "- {name: narrow, model: cauchy, coefficients: [1.5, 0.006],\n"
@@ -41,8 +54,8 @@ int fuzz_input(const uint8_t *data, size_t size) {
     abbe_coatings *all = calloc(1, sizeof *all);
     if (all == NULL) return 0;
     all->count = 1;
-    if (FUZZED(abbe_coating_dat_read(path, i == 0 ? "AR" : "THICK", i == 0 ? 550 : 0, &table,
-                                     &all->coating[0], &error),
+    if (FUZZED(abbe_coating_file_read(path, i == 0 ? "AR" : "THICK", i == 0 ? 550 : 0, &table,
+                                      &all->coating[0], &error),
                &error) == ABBE_OK)
       check(&all->coating[0]);
     else

@@ -365,7 +365,8 @@ TEST(absorption_goes_by_the_field) {
 
 /* Of three indices alike it is a film on glass, for s and p and both ways. */
 TEST(a_film_on_a_crystal_of_one_index_is_one_on_glass) {
-  const abbe_film_layer layer[3] = {{1.38, 0, 99.6}, {2.4, 0.3, 60}, {0.42, 2.4, 12}};
+  const abbe_film_layer layer[3] = {
+      {1.38, 0, 99.6, NULL}, {2.4, 0.3, 60, NULL}, {0.42, 2.4, 12, NULL}};
   const double n = 1.61;
   for (int i = 0; i < 60; i++) {
     const bool inside = i % 2 != 0;
@@ -409,8 +410,8 @@ TEST(films_on_crystals_keep_energy) {
   for (int i = 0; i < 200; i++) {
     const double angle = (0.5 + i) / 200 * 1.5, turn = 2.4 * i,
                  ray[3] = {sin(angle) * cos(turn), sin(angle) * sin(turn), -cos(angle)};
-    const abbe_film_layer layer[2] = {{1.2 + 0.01 * i, 0, 3.0 * i}, {2.4, 0, 60}},
-                          half = {1.38, 0, 275 / 1.38};
+    const abbe_film_layer layer[2] = {{1.2 + 0.01 * i, 0, 3.0 * i, NULL}, {2.4, 0, 60, NULL}},
+                          half = {1.38, 0, 275 / 1.38, NULL};
     const abbe_biaxial_film film = {layer, 2, true, 550}, none = {&half, 1, true, 550};
     for (int mode = 0; mode < 2; mode++) {
       abbe_biaxial_split a, b;

@@ -30,7 +30,7 @@ static double reflected(const stack *s, double to, double nm) {
 }
 
 static stack one(double n, double k, double nm) {
-  return (stack){1, {{n, k, nm}}};
+  return (stack){1, {{n, k, nm, NULL}}};
 }
 
 TEST(an_anti_reflection_coating_of_magnesium_fluoride) {
@@ -63,10 +63,11 @@ TEST(films_of_a_half_wave_a_root_and_many_layers) {
   stack many = {.count = 11};
   for (int i = 0; i < 11; i++) {
     const double n = i % 2 == 0 ? 2.35 : 1.38;
-    many.layer[i] = (abbe_film_layer){n, 0, 550 / (4 * n)};
+    many.layer[i] = (abbe_film_layer){n, 0, 550 / (4 * n), NULL};
   }
   assert_near(reflected(&many, 1.52, 550), 0.994645548, 5e-10);
-  const stack three = {3, {{1.38, 0, MGF2_NM}, {2.15, 0, 550 / (2 * 2.15)}, {1.70, 0, 550 / 6.8}}};
+  const stack three = {
+      3, {{1.38, 0, MGF2_NM, NULL}, {2.15, 0, 550 / (2 * 2.15), NULL}, {1.70, 0, 550 / 6.8, NULL}}};
   assert_near(reflected(&three, 1.52, 450), 0.004153581, 5e-10);
   const stack bubble = one(1.33, 0, 100), thin = one(1.33, 0, 5);
   assert_near(reflected(&bubble, 1, 550), 0.0769246, 5e-8);
@@ -128,7 +129,7 @@ TEST(a_gap_of_air_is_tunnelled_through) {
 
 /* coh_tmm of the package tmm [Byrnes2016], its own test. */
 TEST(absorbing_layers_on_an_absorbing_ground) {
-  const stack s = {2, {{2, 4, 2}, {3, 0.3, 3}}};
+  const stack s = {2, {{2, 4, 2, NULL}, {3, 0.3, 3, NULL}}};
   const double to[2] = {1, 0.1};
   const abbe_film_light out = at(&s, false, 1, to, 0.1 / ABBE_DEGREE, 100);
   assert_near(out.reflected[ABBE_FILM_S], 0.372732088, 5e-10);
@@ -177,7 +178,7 @@ TEST(any_stack_keeps_its_energy_both_ways) {
     for (size_t k = 0; k < s.count; k++)
       s.layer[k] =
           (abbe_film_layer){0.1 + 4 * any(&state), clear ? 0 : 10 * any(&state) * any(&state),
-                            ABBE_FILM_MOST_NM * pow(any(&state), 4)};
+                            ABBE_FILM_MOST_NM * pow(any(&state), 4), NULL};
     const double a[2] = {1 + 2 * any(&state), 0}, b[2] = {1 + 2 * any(&state), 0},
                  nm = 380 + 400 * any(&state);
     const double sine = any(&state), back = a[0] * sine / b[0];
@@ -196,4 +197,43 @@ TEST(any_stack_keeps_its_energy_both_ways) {
   const stack thick = one(1.5, 20, ABBE_FILM_MOST_NM);
   const abbe_film_light out = at(&thick, false, 1, glass, 30, 380);
   assert_true(out.transmitted[0] == 0 && out.reflected[0] > 0.5 && out.reflected[1] < 1);
+}
+
+/* A table of a film's own shares is that film, from either side. */
+TEST(a_table_of_a_film_is_the_film) {
+  enum { ANGLES = 91, WAVES = 61 };
+  const stack film = one(1.38, 0, MGF2_NM);
+  const double air[2] = {1, 0};
+  FREED abbe_film_table *t =
+      calloc(1, sizeof *t + (ANGLES + WAVES + 4 * ANGLES * WAVES) * sizeof *t->number);
+  t->angles = ANGLES;
+  t->wavelengths = WAVES;
+  double *to = t->number + ANGLES + WAVES;
+  for (int k = 0; k < WAVES; k++) t->number[ANGLES + k] = 400 + 5 * k;
+  for (int i = 0; i < ANGLES; i++) {
+    t->number[i] = 1 - cos(i * ABBE_DEGREE);
+    for (int k = 0; k < WAVES; k++) {
+      const abbe_film_light l = at(&film, false, 1, glass, i, 400 + 5 * k);
+      for (int p = 0; p < 2; p++) {
+        *to++ = l.reflected[p];
+        *to++ = l.transmitted[p];
+      }
+    }
+  }
+  const stack table = {1, {{.n = 1, .table = t}}};
+  for (int i = 0; i < 178; i++) {
+    const double degrees = i / 2., nm = 400 + 1.6 * i,
+                 inside = asin(sin(degrees * ABBE_DEGREE) / 1.52);
+    const abbe_film_light a[2] = {at(&table, false, 1, glass, degrees, nm),
+                                  at(&table, true, 1.52, air, inside / ABBE_DEGREE, nm)},
+                          b[2] = {at(&film, false, 1, glass, degrees, nm),
+                                  at(&film, true, 1.52, air, inside / ABBE_DEGREE, nm)};
+    for (int side = 0; side < 2; side++)
+      for (int p = 0; p < 2; p++) {
+        assert_near(a[side].reflected[p], b[side].reflected[p], 2e-3); /* linear between degrees */
+        assert_near(a[side].reflected[p] + a[side].transmitted[p], 1, 1e-12);
+      }
+  }
+  assert_near(at(&table, false, 1, glass, 45, 550).reflected[ABBE_FILM_S], 0.040047718, 5e-10);
+  assert_near(at(&table, false, 1, glass, 45, 550).reflected[ABBE_FILM_P], 0.001355739, 5e-10);
 }

@@ -184,7 +184,8 @@ TEST(two_total_reflections_make_light_circular) {
   assert_near(s[0], 1, 1e-15);
 }
 
-static const abbe_film_layer layers[] = {{0.42, 2.4, 10}, {2.35, 0, 80}, {1.38, 0, 120}};
+static const abbe_film_layer layers[] = {
+    {0.42, 2.4, 10, NULL}, {2.35, 0, 80, NULL}, {1.38, 0, 120, NULL}};
 
 TEST(no_smooth_face_depolarises) {
   const double in[4] = {1, 0.36, -0.48, 0.8}, glass[2] = {GLASS, 0};

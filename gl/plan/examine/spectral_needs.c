@@ -385,7 +385,8 @@ static void note_film(const abbe_object *object, const abbe_coating *coating, bo
         abbe_coating_straight(coating, n, true, nm[i], &r[1][i], &ignored, NULL) != ABBE_OK)
       return;
   }
-  for (size_t i = 0; i < coating->count; i++) thinnest = fmin(thinnest, coating->layer[i].nm);
+  for (size_t i = 0; i < coating->count && coating->layer[0].table == NULL; i++)
+    thinnest = fmin(thinnest, coating->layer[i].nm);
   abbe_plan_note(plan,
                  "%s: film: R at 0 degrees at 450/550/650 nm is %.2f/%.2f/%.2f %% "
                  "from outside, %.2f/%.2f/%.2f %% from inside%s",

@@ -12,10 +12,25 @@
   "f2 0.1 1\nCOAT LOOP\nMGF2 .1 1 2\nCOAT TAPERED\nMGF2 .1 1 0 RIM\nCOAT LOST\nUNOBTANIUM .1 1\n"  \
   "COAT AMPLIFIES\nGAIN .1 1\nCOAT DEEP\nMGF2 5.1 1\nCOAT BROKEN\nMGF2 thin 1\nTABLE T\nANGL 0\n"  \
   "WAVE 0.5 0.1 0.1 0.9 0.9\nIDEAL I 0.9 0.1\nMATE HUGE\n0.5 1e300 0\nCOAT VAST\nHUGE .1 1\nCOAT " \
-  "NAUGHT\n"
+  "NAUGHT\nTABLE S\nANGL 0\nWAVE 0.5 0.1 0.2 0.9 0.7 180 180 0 0\nWAVE 0.6 0 0 1 1\nANGL "         \
+  "60\nWAVE 0.5 "                                                                                  \
+  "0.3 0.1 0.7 0.8\nWAVE 0.6 0.2 0.2 0.8 0.8\nTABLE SHORT\nANGL 0\nWAVE 0.5 0 0 1 1\nANGL "        \
+  "9\nTABLE "                                                                                      \
+  "OTHER\nANGL 0\nWAVE 0.5 0 0 1 1\nANGL 9\nWAVE 0.6 0 0 1 1\nTABLE FALLS\nANGL 9\nWAVE 0.5 0 0 "  \
+  "1 1\n"                                                                                          \
+  "ANGL 8\nWAVE 0.5 0 0 1 1\nTABLE LASES\nANGL 0\nWAVE 0.5 0.5 0 0.6 1\nTABLE SPARSE\nANGL "       \
+  "0\nWAVE "                                                                                       \
+  "0.5 0.5\nTABLE VOID\n"
+/* Its maker's example. [SpeosCoated] */
+#define COATED                                                                                     \
+  "OPTIS - Coated surface file v1.0\nCoating File Example\n4 3\n\t480\t580\t780\n"                 \
+  "0\t31.9\t68.1\t1.5\t98.5\t25.7\t74.3\n\t31.9\t68.1\t1.5\t98.5\t25.7\t74.3\n"                    \
+  "50\t11.3\t88.7\t11.4\t88.6\t23.3\t76.7\n\t11.3\t88.7\t11.4\t88.6\t23.3\t76.7\n"                 \
+  "70\t15\t85\t15.2\t84.8\t26.3\t73.7\n\t16\t84\t15.2\t84.8\t26.3\t73.7\n"                         \
+  "90\t100\t0\t100\t0\t100\t0\n\t100\t0\t100\t0\t100\t0\n"
 
 typedef struct folder {
-  char path[64], file[96], zec[96];
+  char path[64], file[96], zec[96], coated[96];
 } folder;
 
 static void make_folder(folder *f) {
@@ -24,12 +39,15 @@ static void make_folder(folder *f) {
   snprintf(f->file, sizeof f->file, "%s/COATING.DAT", f->path);
   snprintf(f->zec, sizeof f->zec, "%s/AR.ZEC", f->path);
   OK(abbe_file_write(f->file, COATINGS, strlen(COATINGS), &error));
+  snprintf(f->coated, sizeof f->coated, "%s/AR.coated", f->path);
   OK(abbe_file_write(f->zec, "x", 1, &error));
+  OK(abbe_file_write(f->coated, COATED, strlen(COATED), &error));
 }
 
 static void folder_free(folder *f) {
   unlink(f->file);
   unlink(f->zec);
+  unlink(f->coated);
   rmdir(f->path);
 }
 
@@ -181,17 +199,94 @@ TEST(coatings_that_cannot_be_are_refused) {
       {ABBE_SCHEMA, FROM("VAST"), "n = 1e+300"},
       {ABBE_SCHEMA, FROM("DEEP"), "is 5100 nm thick"},
       {ABBE_PARSE, FROM("BROKEN"), "a layer is a material"},
-      {ABBE_UNSUPPORTED, FROM("T"), "of the kind TABLE"},
+      {ABBE_PARSE, FROM("SHORT"), "last angle has 0 lines of WAVE, and its first 1"},
+      {ABBE_SCHEMA, FROM("OTHER"), "all angles of a table have the same wavelengths"},
+      {ABBE_SCHEMA, FROM("FALLS"), "the angle 8 does not do"},
+      {ABBE_SCHEMA, FROM("LASES"), "at 500 nm 50 % is reflected and 60 % transmitted"},
+      {ABBE_PARSE, FROM("SPARSE"), "WAVE has five numbers"},
+      {ABBE_SCHEMA, FROM("VOID"), "not 0 of 0"},
+      {ABBE_UNSUPPORTED,
+       "shape: box, size: [1, 1, 1], material: sapphire, coating: {file: AR.coated}",
+       "'sapphire' is a crystal: give its film as layers"},
       {ABBE_UNSUPPORTED, FROM("I"), "of the kind IDEAL"},
       {ABBE_SCHEMA, FROM("NAUGHT"), "has no layers"},
       {ABBE_UNSUPPORTED, BOX "{file: AR.ZEC, name: AR}", "is an encrypted coating"},
-      {ABBE_UNSUPPORTED, BOX "{file: AR.coated, name: AR}", "a table of reflectances for one side"},
       {ABBE_IO, BOX "{file: none.dat, name: AR}", "none.dat"},
-      {ABBE_SCHEMA, BOX "{file: COATING.DAT}", "name"},
+      {ABBE_SCHEMA, BOX "{file: COATING.DAT}", "Say its name beside the file"},
   };
   FILLED(folder, f, make_folder(&f));
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
     abbe_scene scene;
     REFUSED(rows[i].code, rows[i].part, parse(&f, rows[i].rest, &scene, &error));
+  }
+}
+
+/* Shares of s and p at the wavelength, from that side of that angle. */
+static abbe_film_light light_of(const abbe_scene *scene, double from, double to, double degrees,
+                                double nm) {
+  abbe_film_layer layer[ABBE_FILM_MOST_LAYERS];
+  abbe_film_light out;
+  const double behind[2] = {to, 0};
+  const abbe_coating *c = &scene->object[1].coatings->coating[0];
+  OK(abbe_coating_at(c, nm, layer, &error));
+  abbe_film_light_at(layer, c->count, from > to, from, behind, cos(degrees * ABBE_DEGREE), nm,
+                     &out);
+  return out;
+}
+
+static void check_light(abbe_film_light l, double s, double p, double passed_s, double passed_p) {
+  assert_near(l.reflected[ABBE_FILM_S], s, 1e-12);
+  assert_near(l.reflected[ABBE_FILM_P], p, 1e-12);
+  assert_near(l.transmitted[ABBE_FILM_S], passed_s, 1e-12);
+  assert_near(l.transmitted[ABBE_FILM_P], passed_p, 1e-12);
+}
+
+/* Linear in wavelength and in the angle's cosine, held beyond both, by the angle outside. */
+TEST(tables_of_reflectance_are_read) {
+  FILLED(folder, f, make_folder(&f));
+  MADE(abbe_scene, scene, parse(&f, FROM("S"), &scene, &error));
+  check_light(light_of(&scene, 1, 1.5, 0, 500), 0.1, 0.2, 0.9, 0.7);
+  check_light(light_of(&scene, 1, 1.5, 80, 300), 0.3, 0.1, 0.7, 0.8);
+  check_light(light_of(&scene, 1, 1.5, 0, 525), 0.075, 0.15, 0.925, 0.775);
+  check_light(light_of(&scene, 1, 1.5, acos(0.75) / ABBE_DEGREE, 500), 0.2, 0.15, 0.8, 0.75);
+  check_light(light_of(&scene, 1.5, 1, asin(sin(ABBE_PI / 3) / 1.5) / ABBE_DEGREE, 500), 0.3, 0.1,
+              0.7, 0.8);
+  check_light(light_of(&scene, 1.5, 1, 42, 500), 1, 1, 0, 0);
+  abbe_scene_free(&scene);
+  OK(parse(&f, BOX "{file: AR.coated}", &scene, &error));
+  assert_contains(scene.object[1].coatings->coating[0].path, "/AR.coated");
+  check_light(light_of(&scene, 1, 1.5, 0, 480), 0.319, 0.319, 0.681, 0.681);
+  check_light(light_of(&scene, 1, 1.5, 50, 580), 0.114, 0.114, 0.886, 0.886);
+  check_light(light_of(&scene, 1, 1.5, 70, 400), 0.16, 0.15, 0.84, 0.85);
+  check_light(light_of(&scene, 1, 1.5, 0, 680), 0.136, 0.136, 0.864, 0.864);
+  check_light(light_of(&scene, 1, 1.5, 90, 780), 1, 1, 0, 0);
+}
+
+TEST(damaged_tables_of_reflectance_are_refused) {
+  static const char title[] = "OPTIS - Coated surface file v1.0\n\n";
+  static const struct {
+    abbe_result code;
+    const char *text, *part;
+  } rows[] = {
+      {ABBE_PARSE, "x", "AR.coated:1: it begins 'x'"},
+      {ABBE_PARSE, "", "it begins ''"},
+      {ABBE_PARSE, "%s", "AR.coated:3: '' is no number"},
+      {ABBE_PARSE, "%s1 1\n500\n0 4 96\n4,1 95,9\n", "AR.coated:6: '4,1' is no number"},
+      {ABBE_PARSE, "%s1 1\n500\n0 4 96\n", "'' is no number"},
+      {ABBE_PARSE, "%s1 1\n500\n0 4 96\n4 96 7\n", "goes on behind its 1 angles of 1 wave"},
+      {ABBE_SCHEMA, "%s1 1\n500\n0 4 97\n4 96\n", ":5: at 500 nm 4 % is reflected and 97 %"},
+      {ABBE_SCHEMA, "%s1 1\n500\n0 -4 97\n4 96\n", "both are 0 or more"},
+      {ABBE_SCHEMA, "%s1 2\n500 400\n", "400 nm does not do"},
+      {ABBE_SCHEMA, "%s2 1\n500\n0 4 96\n4 96\n0 4 96\n4 96", "the angle 0 does not do"},
+      {ABBE_SCHEMA, "%s1 1\n500\n91 4 96\n4 96\n", "the angle 91 does not do"},
+      {ABBE_SCHEMA, "%s1025 1\n", "1 to 1024 angles"},
+      {ABBE_SCHEMA, "%s1 0\n", "1 to 4096 wavelengths"},
+  };
+  FILLED(folder, f, make_folder(&f));
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    abbe_scene scene;
+    const char *text = printed(rows[i].text, title);
+    OK(abbe_file_write(f.coated, text, strlen(text), &error));
+    REFUSED(rows[i].code, rows[i].part, parse(&f, BOX "{file: AR.coated}", &scene, &error));
   }
 }

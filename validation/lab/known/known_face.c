@@ -152,7 +152,7 @@ static abbe_result add_film(abbe_known_run *run, const film_row *f, double lambd
                             abbe_error *error) {
   const bool p = f->share == 'p', passes = f->share == 'P';
   const abbe_closed_film form = {f->from, f->n, f->k, f->to, f->thick_nm / lambda_nm};
-  const abbe_film_layer layer = {f->n, f->k, f->thick_nm};
+  const abbe_film_layer layer = {f->n, f->k, f->thick_nm, NULL};
   const double angle = f->degrees / ABBE_KNOWN_DEGREES, to[2] = {f->to, 0};
   double reflected, passed;
   abbe_film_light light;

@@ -220,6 +220,15 @@ abbe_result abbe_tracer_polarise(abbe_tracer *t, abbe_error *error) {
   const bool chooses = !physics->matched && t->desc.polarisation == ABBE_TRACE_POLARISATION_AUTO;
   physics->polarised = on || (chooses && (sheets || abbe_scene_crystal_in_line(s) != NULL));
   t->passes = 1;
+  for (size_t i = 0; physics->polarised && i < s->object_count; i++) {
+    const abbe_coatings *c = s->object[i].coatings;
+    for (size_t k = 0; c != NULL && k < c->count; k++)
+      if (c->coating[k].layer[0].table != NULL)
+        return abbe_error_set(error, ABBE_UNSUPPORTED,
+                              "the coating of '%s' is a table of reflectances, which has no phases "
+                              "for polarised light: take --polarisation off, or give its layers",
+                              s->object[i].name);
+  }
   if (!physics->polarised || !sheets) return ABBE_OK;
   if (s->camera.polariser.kind != ABBE_POLARISER_NONE) t->passes = 0.5f;
   t->dimmed = *s;

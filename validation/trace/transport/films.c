@@ -21,12 +21,12 @@ static abbe_result fill(const abbe_geometry *g, abbe_films *f, abbe_error *error
         const abbe_result result = abbe_coating_at(&c->coating[k], f->lambda_nm[s],
                                                    f->layer[film * (f->steps + 1) + s], error);
         if (result != ABBE_OK) return result;
+        f->key = abbe_coating_digest(f->key, &c->coating[k], f->lambda_nm[s]);
       }
     }
     if (c != NULL) f->key = abbe_digest(f->key, &i, sizeof i);
     if (c != NULL) f->key = abbe_digest_array(f->key, c->face, c->face_count, 1);
   }
-  f->key = abbe_digest_array(f->key, f->layer, f->count * (f->steps + 1), sizeof *f->layer);
   return ABBE_OK;
 }
 
@@ -70,7 +70,7 @@ double abbe_films_at(const abbe_films *f, int film, uint32_t k, float within,
   const double part = (double)within;
   for (size_t i = 0; i < f->layers[film]; i++)
     layer[i] = (abbe_film_layer){low[i].n + part * (high[i].n - low[i].n),
-                                 low[i].k + part * (high[i].k - low[i].k), low[i].nm};
+                                 low[i].k + part * (high[i].k - low[i].k), low[i].nm, low[i].table};
   return f->lambda_nm[k] + part * (f->lambda_nm[k + 1] - f->lambda_nm[k]);
 }
 

@@ -2,6 +2,7 @@
  * ledger. */
 #include "tests/validation/trace/walks/light_walks.h"
 
+#include "base/file.h"
 #include "tests/validation/trace_scene.h"
 #include "validation/trace/tracer/tracer.h"
 
@@ -60,7 +61,8 @@ static void check_pane(const char *coating, const abbe_film_layer *layer, size_t
 }
 
 TEST(a_coated_pane_passes_what_its_films_do) {
-  const abbe_film_layer clear[2] = {{1.38, 0, 99.6}, {2.35, 0, 60}}, grey = {0.42, 2.4, 10};
+  const abbe_film_layer clear[2] = {{1.38, 0, 99.6, NULL}, {2.35, 0, 60, NULL}},
+                        grey = {0.42, 2.4, 10, NULL};
   check_pane("{layers: [[1.38, 99.6], [2.35, 60]]}", clear, 2, true, 0);
   check_pane("{layers: [[[0.42, 2.4], 10]]}", &grey, 1, true, 0);
   check_pane("{layers: [[[0.42, 2.4], 10]]}", &grey, 1, true, 3);
@@ -68,6 +70,26 @@ TEST(a_coated_pane_passes_what_its_films_do) {
   check_pane("[{layers: [[1.38, 99.6]]}, {layers: [[[0.42, 2.4], 10]], faces: [table]}, {layers: "
              "[[1.5, 0]], faces: pavilion}]",
              &grey, 1, false, 1);
+}
+
+/* A table that equals a film gives what the film gives; of one that absorbs, no watt is missed. */
+TEST(a_pane_under_a_table_passes_what_the_film_does) {
+  static const char *const path = "/tmp/abbe-test-coated-walk.coated";
+  const abbe_film_layer films[2] = {{1.38, 0, 99.6, NULL}, {0.42, 2.4, 10, NULL}};
+  for (int i = 0; i < 2; i++) {
+    char text[8192], *end = text;
+    end += sprintf(end, "OPTIS - Coated surface file v1.0\n\n91 1\n550\n");
+    for (int a = 0; a < 91; a++) {
+      abbe_film_light l;
+      abbe_film_light_at(&films[i], 1, false, 1, (const double[2]){1.51852, 0},
+                         cos(a * ABBE_DEGREE), 550, &l);
+      end += sprintf(end, "%d %.6f %.6f\n%.6f %.6f\n", a, 100 * l.reflected[1],
+                     100 * l.transmitted[1], 100 * l.reflected[0], 100 * l.transmitted[0]);
+    }
+    OK(abbe_file_write(path, text, (size_t)(end - text), &error));
+    check_pane(printed("{file: %s, faces: table}", path), &films[i], 1, false, i ? 3 : 0);
+  }
+  unlink(path);
 }
 
 /* In even surroundings a stone with clear films is as bright as they are; absorbing ones make it
