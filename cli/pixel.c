@@ -4,6 +4,7 @@
 #include "cli/options/picture_options.h"
 #include "colorimetry/chromaticity.h"
 #include "colorimetry/colour_temperature.h"
+#include "colorimetry/gamut.h"
 #include "colorimetry/image/image.h"
 #include "colorimetry/plot/chart.h"
 #include "colorimetry/spectral_picture/pixel_probe.h"
@@ -19,16 +20,26 @@
 
 /* All that a colorimeter says of a colour. */
 
+enum { GAMUTS = 3 };
+
+static const struct {
+  abbe_gamut gamut;
+  const char *key, *text;
+} gamuts[GAMUTS] = {{ABBE_GAMUT_REC709, "rec709", "Rec.709"},
+                    {ABBE_GAMUT_P3, "p3", "P3"},
+                    {ABBE_GAMUT_REC2020, "rec2020", "Rec.2020"}};
+
 /* What there is none of is NaN. */
 typedef struct abbe_colour_description {
   double xyz[3];
   double xy[2], uv[2];    /* x, y and u', v' (chromaticity.h) */
   abbe_dominant dominant; /* with respect to the white */
   double kelvin, duv;     /* correlated colour temperature (colour_temperature.h) */
+  double rgb[GAMUTS][3];  /* linear, of each gamut, over the greatest of the three */
 } abbe_colour_description;
 
-/* Describes XYZ as that observer sees it, with respect to a white of chromaticity white_xy. A
- * correlated colour temperature is defined for the observer of 1931 alone. */
+/* Describes XYZ as that observer sees it, with respect to a white of chromaticity white_xy.
+ * Correlated colour temperatures and gamuts are defined for the observer of 1931 alone. */
 static void colour_description_make(const double xyz[3], const double white_xy[2],
                                     abbe_observer observer, abbe_colour_description *out) {
   *out = (abbe_colour_description){.xyz = {xyz[0], xyz[1], xyz[2]},
@@ -37,12 +48,24 @@ static void colour_description_make(const double xyz[3], const double white_xy[2
                                    .dominant = {NAN, NAN, NAN},
                                    .kelvin = NAN,
                                    .duv = NAN};
+  for (int k = 0; k < 3 * GAMUTS; k++) out->rgb[k / 3][k % 3] = NAN;
   if (!abbe_chromaticity_xy(xyz, out->xy)) return;
   abbe_chromaticity_uv_of_xy(out->xy, out->uv);
   abbe_chromaticity_dominant(out->xy, white_xy, observer, &out->dominant);
   if (observer == ABBE_OBSERVER_CIE_1931)
     abbe_colour_temperature_find(out->xy, &out->kelvin, &out->duv);
+  for (int g = 0; g < GAMUTS && observer == ABBE_OBSERVER_CIE_1931; g++) {
+    double matrix[9], *rgb = out->rgb[g];
+    abbe_gamut_from_xyz(gamuts[g].gamut, matrix);
+    abbe_rgb_space_apply(matrix, xyz, rgb);
+    const double most = fmax(rgb[0], fmax(rgb[1], rgb[2]));
+    for (int k = 0; k < 3; k++) rgb[k] /= most;
+  }
 }
+
+/* (1, 0, 0) of a gamut, in single precision, is on its edge and not outside; and so on the locus
+ * are Rec.2020's primaries, whose printed digits have purities of up to 1.0008. */
+static const double edge = 1e-5, locus = 0.002;
 
 typedef struct request {
   const char *program, *path, *layer, *plot;
@@ -86,6 +109,24 @@ static void print_number(const char *before, double value, const char *format, c
     printf(format, value);
 }
 
+/* The gamuts that the colour is outside of, with what they would need less than nothing of. */
+static void print_gamuts(const abbe_colour_description *c) {
+  static const char *const primary[3] = {"red", "green", "blue"};
+  int outside = 0;
+  if (isnan(c->rgb[0][0])) return;
+  printf("  outside of              ");
+  for (int g = 0; g < GAMUTS; g++) {
+    const double *rgb = c->rgb[g];
+    if (fmin(rgb[0], fmin(rgb[1], rgb[2])) >= -edge) continue;
+    printf("%s%s (", outside++ > 0 ? ", " : "", gamuts[g].text);
+    for (int k = 0, before = 0; k < 3; k++)
+      if (rgb[k] < -edge) printf("%s%s %.4f", before++ > 0 ? ", " : "", primary[k], rgb[k]);
+    printf(")");
+  }
+  if (c->dominant.purity > 1 + locus) printf("%sthe spectral locus", outside++ > 0 ? ", " : "");
+  printf("%s\n", outside > 0 ? "" : "none of Rec.709, P3, Rec.2020");
+}
+
 static void print_colour(const abbe_colour_description *c) {
   printf("  XYZ                     %.6g %.6g %.6g\n", c->xyz[0], c->xyz[1], c->xyz[2]);
   if (isnan(c->xy[0])) {
@@ -100,6 +141,7 @@ static void print_colour(const abbe_colour_description *c) {
   print_number("  excitation purity       ", c->dominant.purity, "%.4f\n", "none\n");
   print_number("  colour temperature      ", c->kelvin, "%.0f K", "none");
   print_number(", Duv ", c->duv, "%.5f\n", "none\n");
+  print_gamuts(c);
 }
 
 static void print_text(const request *r, const abbe_image *image, const abbe_pixel_probe *p,
@@ -136,7 +178,9 @@ static bool add_pair(cJSON *o, const char *name, const double *value, int count)
 
 /* cJSON writes NaN as null. */
 static bool add_colour(cJSON *root, const char *name, const abbe_colour_description *c) {
-  cJSON *o = cJSON_AddObjectToObject(root, name);
+  cJSON *o = cJSON_AddObjectToObject(root, name), *rgb = cJSON_AddObjectToObject(o, "linear_rgb");
+  for (int g = 0; g < GAMUTS; g++)
+    if (rgb == NULL || !add_pair(rgb, gamuts[g].key, c->rgb[g], 3)) return false;
   return o != NULL && add_pair(o, "xyz", c->xyz, 3) && add_pair(o, "xy", c->xy, 2) &&
          add_pair(o, "uv", c->uv, 2) &&
          cJSON_AddNumberToObject(o, "dominant_nm", c->dominant.lambda_nm) != NULL &&
@@ -320,7 +364,8 @@ static const struct argp parser = {
     .doc =
         "Says what a picture has at a pixel, or in the mean of a region: its channels with their "
         "standard errors, and its colour: XYZ, x, y, u', v', dominant wavelength, purity, "
-        "correlated colour temperature. Where it has bands, also the colour of its spectrum, for "
+        "correlated colour temperature, and which gamuts it is outside of. Where it has bands, "
+        "also the colour of its spectrum, for "
         "any observer.\v"
         "Pixels are counted as the file counts them (abbe info says its windows), y downwards.\n\n"
         "Examples:\n"

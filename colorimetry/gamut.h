@@ -2,7 +2,7 @@
  *
  * A gamut is three primaries and a white. Colours that need less than nothing of a primary are
  * outside, however much light there is; how bright a display gets is another matter. XYZ is
- * relative to D65, as everywhere here. Internal to colorimetry/.
+ * relative to D65, as everywhere here.
  */
 #ifndef ABBE_COLORIMETRY_GAMUT_H
 #define ABBE_COLORIMETRY_GAMUT_H

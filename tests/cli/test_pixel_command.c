@@ -1,6 +1,7 @@
 /* The subcommand pixel, as a person or a program runs it. */
 #include "tests/cli/run_output.h"
 
+#include "colorimetry/gamut.h"
 #include "colorimetry/image/exr.h"
 
 #include <cjson/cJSON.h>
@@ -46,6 +47,28 @@ TEST(equal_energy) {
   assert_int_equal(run(PIXEL "1,1 --observer 1964"), 0);
   assert_contains(output, "CIE 1964, 10 degrees");
   assert_contains(output, "S0.385nm");
+}
+
+/* Rec.2020's green in linear Rec.709 is (-0.5876, 1.1329, -0.1006) [BT2407]. */
+TEST(which_gamuts_a_colour_is_outside_of) {
+  const char *const rgb[3] = {"R", "G", "B"};
+  MADE(abbe_image, image, abbe_image_make(1, 1, 3, rgb, &image, &error));
+  abbe_gamut_chromaticities(ABBE_GAMUT_REC2020, image.xy);
+  image.data[1] = 4;
+  OK(abbe_exr_write("pixel_gamut.exr", &image, &error));
+  assert_int_equal(run("pixel pixel_gamut.exr 0,0"), 0);
+  assert_contains(output, "outside of              Rec.709 (red -0.5187, blue -0.0888), P3 (red "
+                          "-0.2623, blue -0.0182)\n");
+  assert_int_equal(run("pixel pixel_gamut.exr 0,0 --json"), 0);
+  cJSON *root = cJSON_Parse(strchr(output, '{'));
+  const cJSON *picture = cJSON_GetObjectItem(root, "picture");
+  const cJSON *linear = cJSON_GetObjectItem(cJSON_GetObjectItem(picture, "linear_rgb"), "rec709");
+  assert_near(cJSON_GetNumberValue(cJSON_GetArrayItem(linear, 0)), -0.5876 / 1.1329, 1e-4);
+  assert_near(cJSON_GetNumberValue(cJSON_GetArrayItem(linear, 2)), -0.1006 / 1.1329, 1e-4);
+  cJSON_Delete(root);
+  remove("pixel_gamut.exr");
+  assert_int_equal(run(PIXEL "0,0"), 0);
+  assert_contains(output, "outside of              none of Rec.709, P3, Rec.2020\n");
 }
 
 TEST(refusals) {
