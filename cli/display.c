@@ -3,7 +3,7 @@
 #include "cli/options/picture_options.h"
 
 #include "base/number.h"
-#include "colorimetry/image/image.h"
+#include "colorimetry/image/exr.h"
 #include "colorimetry/plot/false_colours.h"
 #include "colorimetry/screen/lut.h"
 #include "colorimetry/spectral_picture/relight.h"
@@ -20,6 +20,7 @@ typedef struct request {
   abbe_screen_options screen;
   size_t nodes; /* of a table, and its stops; 0: the default */
   double low, high;
+  abbe_exr_reader *file; /* of an OpenEXR, whose pixels are read as they are needed */
   bool list;
 } request;
 
@@ -36,6 +37,7 @@ static abbe_result show_spectrum(const request *r, const abbe_image *image, abbe
                                   .view = r->spectral.view,
                                   .space = ABBE_RGB_SPACE_XYZ,
                                   .relative = true,
+                                  .file = r->file,
                                   .odd = &odd};
   ABBE_OWNED(abbe_image, xyz) = {0};
   if (r->source != NULL)
@@ -74,10 +76,15 @@ static void note_observer(const request *r, const abbe_image *image) {
           r->in, text);
 }
 
-static abbe_result display(const request *r, const abbe_image *image, abbe_error *error) {
-  if (r->spectral.given) return show_spectrum(r, image, error);
-  if (abbe_false_colours_mean(image, r->layer)) return show_numbers(r, image, error);
-  if (abbe_relight_is_needed(image, r->layer)) return show_spectrum(r, image, error);
+static abbe_result display(const request *r, abbe_image *image, abbe_error *error) {
+  const bool numbers = !r->spectral.given && abbe_false_colours_mean(image, r->layer);
+  if (r->spectral.given || (!numbers && abbe_relight_is_needed(image, r->layer)))
+    return show_spectrum(r, image, error);
+  if (r->file != NULL) {
+    abbe_image_free(image);
+    ABBE_TRY(abbe_exr_read_first(r->file, SIZE_MAX, image, error));
+  }
+  if (numbers) return show_numbers(r, image, error);
   note_observer(r, image);
   return abbe_screen_options_write(&r->screen, r->out, image, r->layer, r->in, error);
 }
@@ -240,9 +247,10 @@ int abbe_command_display(int argc, char **argv) {
   if (abbe_lut_is_meant(r.out)) return abbe_command_end(r.program, write_table(&r, &error), &error);
   abbe_image image = {0};
   abbe_result result = abbe_spectral_options_load(&r.spectral, &error);
-  if (result == ABBE_OK) result = abbe_command_read_picture(r.in, &image, &error);
+  if (result == ABBE_OK) result = abbe_command_open_picture(r.in, &r.file, &image, &error);
   if (result == ABBE_OK) result = display(&r, &image, &error);
   abbe_image_free(&image);
+  abbe_exr_close(r.file);
   abbe_spectral_options_free(&r.spectral);
   return abbe_command_end(r.program, result, &error);
 }

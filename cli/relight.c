@@ -3,7 +3,6 @@
 #include "cli/options/picture_options.h"
 
 #include "colorimetry/image/exr.h"
-#include "colorimetry/image/picture_file.h"
 #include "colorimetry/spectral_picture/relight.h"
 
 #include <argp.h>
@@ -35,18 +34,6 @@ static abbe_result relight(const request *r, const abbe_image *image, abbe_error
     ABBE_TRY(abbe_screen_options_write(&r->screen, r->png, &out, NULL, r->in, error));
   fprintf(stderr, "%s; 1 is %s\n", abbe_image_attribute_text(&out, "abbe:observer"),
           abbe_image_attribute_text(&out, "abbe:unit"));
-  return ABBE_OK;
-}
-
-/* Pixels of an OpenEXR stay in the file. */
-static abbe_result open_picture(request *r, abbe_image *image, abbe_error *error) {
-  abbe_picture_file_kind kind;
-  ABBE_TRY(abbe_picture_file_find_kind(r->in, &kind, error));
-  if (kind == ABBE_PICTURE_FILE_RADIANCE || kind == ABBE_PICTURE_FILE_ENVI)
-    return abbe_command_read_picture(r->in, image, error);
-  ABBE_TRY(abbe_exr_open(r->in, &r->file, error));
-  ABBE_TRY(abbe_exr_read_header(r->file, image, error));
-  abbe_command_note_part(r->in, image->part);
   return ABBE_OK;
 }
 
@@ -127,7 +114,7 @@ int abbe_command_relight(int argc, char **argv) {
   if (result == ABBE_OK && r.png != NULL)
     result = abbe_screen_options_check(&r.screen, r.png, r.desc.space, &error);
   if (result == ABBE_OK) result = abbe_spectral_options_load(&r.spectral, &error);
-  if (result == ABBE_OK) result = open_picture(&r, &image, &error);
+  if (result == ABBE_OK) result = abbe_command_open_picture(r.in, &r.file, &image, &error);
   if (result == ABBE_OK) result = relight(&r, &image, &error);
   abbe_image_free(&image);
   abbe_exr_close(r.file);

@@ -4,6 +4,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "cli/base/arguments.h"
+#include "colorimetry/image/exr.h"
 #include "colorimetry/image/picture_file.h"
 #include "colorimetry/screen/screen_file.h"
 
@@ -137,6 +138,18 @@ void abbe_command_note_part(const char *name, const char *part) {
 
 abbe_result abbe_command_read_picture(const char *path, struct abbe_image *out, abbe_error *error) {
   ABBE_TRY(abbe_picture_file_read(path, out, error));
+  abbe_command_note_part(path, out->part);
+  return ABBE_OK;
+}
+
+abbe_result abbe_command_open_picture(const char *path, struct abbe_exr_reader **file,
+                                      struct abbe_image *out, abbe_error *error) {
+  abbe_picture_file_kind kind;
+  ABBE_TRY(abbe_picture_file_find_kind(path, &kind, error));
+  if (kind == ABBE_PICTURE_FILE_RADIANCE || kind == ABBE_PICTURE_FILE_ENVI)
+    return abbe_command_read_picture(path, out, error);
+  ABBE_TRY(abbe_exr_open(path, file, error));
+  ABBE_TRY(abbe_exr_read_header(*file, out, error));
   abbe_command_note_part(path, out->part);
   return ABBE_OK;
 }

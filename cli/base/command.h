@@ -12,6 +12,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+struct abbe_exr_reader;
 struct abbe_image;
 struct abbe_image_odd;
 struct cJSON;
@@ -114,6 +115,10 @@ void abbe_command_note_odd(const char *name, const struct abbe_image_odd *odd, c
 void abbe_command_note_part(const char *name, const char *part);
 /* Reads a scene-linear picture with that note. Errors of abbe_picture_file_read. */
 abbe_result abbe_command_read_picture(const char *path, struct abbe_image *out, abbe_error *error);
+/* The same, but of an OpenEXR file the header alone: its pixels are read from *file, to be closed
+ * by abbe_exr_close, which is NULL for other kinds. */
+abbe_result abbe_command_open_picture(const char *path, struct abbe_exr_reader **file,
+                                      struct abbe_image *out, abbe_error *error);
 
 /* Prints json and a line's end to stdout and deletes it. Where it is NULL or not all of it was
  * made, for want of memory, nothing is printed and ABBE_NO_MEMORY comes back. */

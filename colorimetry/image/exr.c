@@ -432,19 +432,16 @@ abbe_result abbe_exr_read_header(abbe_exr_reader *r, abbe_image *out, abbe_error
 }
 
 abbe_result abbe_exr_read_sums(abbe_exr_reader *r, size_t count, const size_t *channel,
-                               const double (*weight)[3], abbe_image *out, abbe_image_odd *odd,
-                               abbe_error *error) {
+                               const double (*weight)[3], const double *factor, abbe_image *out,
+                               abbe_image_odd *odd, abbe_error *error) {
   abbe_exr_sums sums = {0};
-  abbe_image three = *out;
-  float *data = calloc(out->width * out->height, 3 * sizeof *data);
-  if (data == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", r->path);
-  for (size_t i = 0; i < count; i++) sums.weight[channel[i]] = weight[i];
-  three.data = data;
+  for (size_t i = 0; i < count; i++) {
+    sums.weight[channel[i]] = weight[i];
+    sums.place[channel[i]] = 3 + i < out->channels ? 3 + i : 0;
+    sums.factor[channel[i]] = factor[i];
+  }
   r->step = 1;
-  const exr_result_t rv = read_pass(r, &three, &sums);
-  for (size_t p = 0; p < out->width * out->height; p++)
-    memcpy(out->data + p * out->channels, data + 3 * p, 3 * sizeof *data);
-  free(data);
+  const exr_result_t rv = read_pass(r, out, &sums);
   *odd = sums.odd;
   return rv == 0 ? ABBE_OK : abbe_exr_fail(&r->stream, rv, error);
 }

@@ -64,12 +64,13 @@ abbe_result abbe_exr_read_level(abbe_exr_reader *reader, size_t level, const siz
 /* The picture as abbe_exr_read has it without its pixels: data is NULL. Errors of abbe_exr_read. */
 abbe_result abbe_exr_read_header(abbe_exr_reader *reader, abbe_image *out, abbe_error *error);
 
-/* The first three channels of out, a picture of the file's size, become the sums of the file's
- * channels channel[count] times weight[count][3]; the others stay. *odd: pixels of which a channel
- * that counts is infinite or NaN, whose sums are so too. Errors of abbe_exr_read. */
+/* The first three channels of out, a picture of the file's size and all 0, become the sums of the
+ * file's channels channel[count] times weight[count][3]; those behind, if it has count more, these
+ * channels times factor[count]. *odd: pixels of which a channel that counts is infinite or NaN,
+ * whose sums are so too. Errors of abbe_exr_read. */
 abbe_result abbe_exr_read_sums(abbe_exr_reader *reader, size_t count, const size_t *channel,
-                               const double (*weight)[3], abbe_image *out, abbe_image_odd *odd,
-                               abbe_error *error);
+                               const double (*weight)[3], const double *factor, abbe_image *out,
+                               abbe_image_odd *odd, abbe_error *error);
 
 /* The picture as abbe_exr_read has it; but of scan lines with more than so many numbers every n-th
  * chunk alone, about so many numbers, each line between as the one above it. */

@@ -1,3 +1,4 @@
+#include "base/maths.h"
 #include "colorimetry/image/exr_parts.h"
 
 #include <math.h>
@@ -6,6 +7,9 @@
 
 #ifdef ABBE_HAS_DEFLATE
 #include <libdeflate.h>
+#endif
+#ifdef __SSE2__
+#include <immintrin.h>
 #endif
 
 enum { BLOCK = 512 }; /* pixels of a line at a time, that they stay in the processor's cache */
@@ -24,14 +28,37 @@ static float half_of(uint32_t bits) {
 }
 
 static uint32_t word_of(const uint8_t *b) {
-  return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+  uint32_t word;
+  memcpy(&word, b, sizeof word);
+  return __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? word : __builtin_bswap32(word);
 }
 
+static uint16_t short_of(const uint8_t *b) {
+  uint16_t word;
+  memcpy(&word, b, sizeof word);
+  return __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? word : __builtin_bswap16(word);
+}
+
+#ifdef __SSE2__
+/* Halves, eight at a time; returns how many. */
+__attribute__((target("avx,f16c"))) static int64_t widen(const uint8_t *bytes, int64_t count,
+                                                         float *out) {
+  int64_t i = 0;
+  for (; i + 8 <= count; i += 8)
+    _mm256_storeu_ps(out + i, _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(bytes + 2 * i))));
+  return i;
+}
+#endif
+
 /* A channel's neighbouring samples, as floats. */
+SIDE_BY_SIDE
 static void convert(const uint8_t *bytes, int type, double unit, int64_t count, float *out) {
+  int64_t done = 0;
+#ifdef __SSE2__
+  if (type == EXR_PIXEL_HALF && __builtin_cpu_supports("f16c")) done = widen(bytes, count, out);
+#endif
   if (type == EXR_PIXEL_HALF)
-    for (int64_t i = 0; i < count; i++)
-      out[i] = half_of(bytes[2 * i] | (uint32_t)bytes[2 * i + 1] << 8);
+    for (int64_t i = done; i < count; i++) out[i] = half_of(short_of(bytes + 2 * i));
   else if (type == EXR_PIXEL_FLOAT)
     for (int64_t i = 0; i < count; i++) out[i] = float_of(word_of(bytes + 4 * i));
   else
@@ -74,6 +101,13 @@ static void count_odd(const exr_decode_pipeline_t *pipe, const abbe_exr_place *t
   to->sums->odd.nan += !infinite;
 }
 
+SIDE_BY_SIDE
+static void add_weighted(const double weight[3], const float *value, int64_t count,
+                         double sum[3][BLOCK]) {
+  for (int k = 0; k < 3; k++)
+    for (int64_t i = 0; i < count; i++) sum[k][i] += weight[k] * (double)value[i];
+}
+
 static void add_up(const exr_decode_pipeline_t *pipe, const abbe_exr_place *to, const uint8_t *line,
                    const piece *p) {
   const uint8_t *first = line;
@@ -86,11 +120,14 @@ static void add_up(const exr_decode_pipeline_t *pipe, const abbe_exr_place *to, 
     line += pipe->chunk.width * bytes;
     if (weight == NULL) continue;
     convert(samples, pipe->channels[c].data_type, to->part->unit, p->count, value);
-    for (int k = 0; k < 3; k++)
-      for (int64_t i = 0; i < p->count; i++) sum[k][i] += weight[k] * (double)value[i];
+    add_weighted(weight, value, p->count, sum);
+    const size_t place = to->sums->place[to->part->first + c], stride = to->image->channels;
+    float *kept = to->image->data + (size_t)p->pixel * stride + place;
+    for (int64_t i = 0; place > 0 && i < p->count; i++)
+      kept[(size_t)i * stride] = (float)(to->sums->factor[to->part->first + c] * (double)value[i]);
   }
   for (int64_t i = 0; i < p->count; i++) {
-    float *out = to->image->data + (p->pixel + i) * 3;
+    float *out = to->image->data + (size_t)(p->pixel + i) * to->image->channels;
     for (int k = 0; k < 3; k++) out[k] += (float)sum[k][i];
     if (!isfinite(sum[0][i] + sum[1][i] + sum[2][i])) count_odd(pipe, to, first, p->from + i);
   }
@@ -117,13 +154,53 @@ static exr_result_t unpack(exr_decode_pipeline_t *pipe) {
   return EXR_ERR_SUCCESS;
 }
 
+#ifdef ABBE_HAS_DEFLATE
+
+#ifdef __SSE2__
+/* Sums of neighbouring differences less 128, on from the last one of `before`. */
+static __m128i sum_up(const uint8_t *difference, __m128i *before) {
+  __m128i x = _mm_xor_si128(_mm_loadu_si128((const __m128i *)difference), _mm_set1_epi8((char)128));
+  x = _mm_add_epi8(x, _mm_slli_si128(x, 1));
+  x = _mm_add_epi8(x, _mm_slli_si128(x, 2));
+  x = _mm_add_epi8(x, _mm_slli_si128(x, 4));
+  x = _mm_add_epi8(x, _mm_slli_si128(x, 8));
+  const __m128i last = _mm_shufflehi_epi16(_mm_unpackhi_epi8(x, x), 0xff), sums = x;
+  x = _mm_add_epi8(sums, *before);
+  *before = _mm_add_epi8(*before, _mm_unpackhi_epi64(last, last));
+  return x;
+}
+#endif
+
+/* The bytes whose differences are a, of even places, and then b, of odd ones. */
+static void rejoin(const uint8_t *a, size_t size, uint8_t *out) {
+  const size_t half = (size + 1) / 2;
+  const uint8_t *b = a + half;
+  uint8_t even = 128, odd = 128;
+  size_t i = 0;
+  for (size_t k = 0; k < half; k++) odd = (uint8_t)(odd + a[k] - 128);
+#ifdef __SSE2__
+  __m128i from[2] = {_mm_set1_epi8((char)even), _mm_set1_epi8((char)odd)};
+  for (; i + 16 <= size - half; i += 16) {
+    const __m128i x = sum_up(a + i, &from[0]), y = sum_up(b + i, &from[1]);
+    _mm_storeu_si128((__m128i *)(out + 2 * i), _mm_unpacklo_epi8(x, y));
+    _mm_storeu_si128((__m128i *)(out + 2 * i + 16), _mm_unpackhi_epi8(x, y));
+  }
+  even = (uint8_t)_mm_cvtsi128_si32(from[0]);
+  odd = (uint8_t)_mm_cvtsi128_si32(from[1]);
+#endif
+  for (; i < half; i++) {
+    out[2 * i] = even = (uint8_t)(even + a[i] - 128);
+    if (i < size - half) out[2 * i + 1] = odd = (uint8_t)(odd + b[i] - 128);
+  }
+}
+#endif
+
 /* What ZIP has packed, in half the time that zlib takes; false: the library shall try, or say why
  * it cannot. The bytes are differences, all even places before all odd ones. */
 static bool inflate(exr_decode_pipeline_t *pipe, abbe_exr_source *from) {
 #ifdef ABBE_HAS_DEFLATE
-  const size_t size = pipe->chunk.unpacked_size, half = (size + 1) / 2;
+  const size_t size = pipe->chunk.unpacked_size;
   size_t made = 0;
-  uint8_t *out = pipe->unpacked_buffer, even = 0, odd = 0;
   if (from->layout.compression != EXR_COMPRESSION_ZIP &&
       from->layout.compression != EXR_COMPRESSION_ZIPS)
     return false;
@@ -133,24 +210,13 @@ static bool inflate(exr_decode_pipeline_t *pipe, abbe_exr_source *from) {
     from->differences = malloc(size);
     from->bytes = from->differences != NULL ? size : 0;
   }
-  uint8_t *a = from->differences, *b = a + half;
-  if (from->inflater == NULL || a == NULL || out == NULL || size < 2) return false;
-  if (libdeflate_zlib_decompress(from->inflater, pipe->packed_buffer, pipe->chunk.packed_size, a,
-                                 size, &made) != LIBDEFLATE_SUCCESS ||
+  if (from->inflater == NULL || from->differences == NULL || pipe->unpacked_buffer == NULL)
+    return false;
+  if (libdeflate_zlib_decompress(from->inflater, pipe->packed_buffer, pipe->chunk.packed_size,
+                                 from->differences, size, &made) != LIBDEFLATE_SUCCESS ||
       made != size)
     return false;
-  a[0] = (uint8_t)(a[0] + 128);
-  for (size_t i = 0; i < size - half;
-       i++) { /* both sums at once, for each add waits for the last */
-    a[i] = even = (uint8_t)(even + a[i] - 128);
-    b[i] = odd = (uint8_t)(odd + b[i] - 128);
-  }
-  if (half > size - half) a[half - 1] = even = (uint8_t)(even + a[half - 1] - 128);
-  for (size_t i = 0; i < size - half; i++) {
-    out[2 * i] = a[i];
-    out[2 * i + 1] = (uint8_t)(b[i] + even);
-  }
-  if (half > size - half) out[size - 1] = a[half - 1];
+  rejoin(from->differences, size, pipe->unpacked_buffer);
   return true;
 #else
   (void)pipe;

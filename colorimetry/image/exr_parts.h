@@ -49,9 +49,11 @@ typedef struct abbe_exr_source {
   size_t bytes;
 } abbe_exr_source;
 
-/* Three sums of channels in the place of a picture's channels. */
+/* Three sums of channels in the place of a picture's channels, and behind them those channels. */
 typedef struct abbe_exr_sums {
   const double *weight[ABBE_IMAGE_MAX_CHANNELS]; /* [3] of each; NULL: it does not count */
+  size_t place[ABBE_IMAGE_MAX_CHANNELS];         /* the picture's channel; 0: it is not kept */
+  double factor[ABBE_IMAGE_MAX_CHANNELS];        /* of what is kept */
   abbe_image_odd odd;                            /* of those that count; threads add to it */
 } abbe_exr_sums;
 
@@ -59,7 +61,7 @@ typedef struct abbe_exr_sums {
  * may lie outside. */
 typedef struct abbe_exr_place {
   abbe_exr_source *part;
-  const abbe_image *image; /* of three channels where there are sums, which are added to them */
+  const abbe_image *image; /* where there are sums, its first three channels are added to */
   abbe_exr_sums *sums;     /* NULL: the channels themselves */
   int64_t x, y;
 } abbe_exr_place;

@@ -150,7 +150,7 @@ typedef struct codec {
  * neighbouring bytes, those at even places first. */
 static bool deflate(exr_encode_pipeline_t *pipe, codec *own) {
 #ifdef ABBE_HAS_DEFLATE
-  enum { LEVEL = 4 };
+  enum { LEVEL = 1 }; /* higher ones make floats smaller by less than a hundredth */
   const size_t size = pipe->packed_bytes, half = (size + 1) / 2;
   const uint8_t *in = pipe->packed_buffer;
   if (own->deflater == NULL) own->deflater = libdeflate_alloc_compressor(LEVEL);

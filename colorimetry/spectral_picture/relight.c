@@ -117,16 +117,15 @@ static void fill(const abbe_image *image, const abbe_spectral_channels *c,
   }
 }
 
-/* Of a file the colours alone are held, but for bands that are kept and for infinities, which need
- * to be known before. */
+/* Of a file what is asked for alone is held, but for infinities, which need to be known before. */
 static abbe_result fill_from(const abbe_image *image, const abbe_spectral_channels *c,
                              const abbe_relight_desc *d, const double (*weight)[3],
                              const double *factor, abbe_image *out, abbe_error *error) {
   abbe_image whole = {0};
   abbe_image_odd odd = {0};
-  if (d->file != NULL && !d->bands)
-    ABBE_TRY(abbe_exr_read_sums(d->file, c->terms, c->channel, weight, out, &odd, error));
-  if (d->file == NULL || d->bands || odd.infinite > 0) {
+  if (d->file != NULL)
+    ABBE_TRY(abbe_exr_read_sums(d->file, c->terms, c->channel, weight, factor, out, &odd, error));
+  if (d->file == NULL || odd.infinite > 0) {
     if (d->file != NULL) ABBE_TRY(abbe_exr_read_first(d->file, SIZE_MAX, &whole, error));
     const abbe_image *from = d->file != NULL ? &whole : image;
     abbe_image_count_odd(from, c->channel, c->terms, &odd);
