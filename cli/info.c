@@ -68,14 +68,19 @@ static void print_windows(const abbe_image *image) {
                 : "");
 }
 
-/* Lines after the first are set in: what a file says must not look like what the program says. */
+/* Lines after the first are set in: what a file says must not look like what the program says. Some
+ * programs write whole tables on a line. */
 static void print_attribute(const abbe_image_attribute *attribute) {
+  enum { MOST = 400 };
   char name[256];
+  size_t column = 0;
   abbe_utf8_printable(attribute->name, strlen(attribute->name), false, name, sizeof name);
   printf("%s: ", name);
   for (const char *c = attribute->text; *c != '\0'; c++) {
-    putchar(*c);
+    column = *c == '\n' ? 0 : column + ((*c & 0xc0) != 0x80);
+    if (column <= MOST) putchar(*c);
     if (*c == '\n') printf("    ");
+    if (column == MOST + 1 && (*c & 0xc0) != 0x80) printf("… (--json has all)");
   }
   putchar('\n');
 }

@@ -286,6 +286,12 @@ TEST(info) {
   assert_true(number(z, "mean", -1) == 29);
   cJSON_Delete(json);
   must(0, "4 x 3 pixels, 4 channels", printed("info %s", exr));
+  MADE(abbe_image, image, abbe_exr_read(exr, &image, &error));
+  char table[2000] = {0};
+  memset(table, '7', sizeof table - 1);
+  OK(abbe_image_set_attribute(&image, "table", table, &error));
+  OK(abbe_exr_write(exr, &image, &error));
+  must(0, "777… (--json has all)", printed("info %s", exr));
   must(2, "which file", "info");
   must(1, "/no/such.exr", "info /no/such.exr");
   OK(abbe_file_write(other, "broken", 6, &error));
