@@ -128,3 +128,25 @@ TEST(a_receivers_shadow_is_not) {
   assert_near(l.statistics.ledger.hidden / hidden, 1, 0.01);
   assert_near(channel_sum(&l.map, "Y") / (0.4 * each), 1, 0.01);
 }
+
+/* The pair of prisms in the docs: N-BK7 in vacuum at -40 degrees has Schott's index, and the lines
+ * F and C leave alike, 10 degrees down. [SchottTIE19] */
+TEST(two_prisms_of_crown_and_flint_deviate_without_colour) {
+  const double from[3] = {-0.06, 0, 0.132}, d[3] = {1, 0, 0};
+  const double nm[3] = {486.13, 656.27, 587.5618};
+  double down[3];
+  MADE(abbe_scene, scene,
+       abbe_scene_load(ABBE_SOURCE_DIR "/docs/examples/achromat.yaml", NULL, &scene, &error));
+  MADE(abbe_geometry, g, abbe_geometry_make(&scene, &g, &error));
+  for (int i = 0; i < 3; i++) {
+    abbe_route_vertex v[16];
+    size_t count;
+    OK(abbe_route_follow(&g, from, d, nm[i], "", v, 16, &count, &error));
+    assert_int_equal(count, 5);
+    assert_int_equal(v[4].event, ABBE_ROUTE_LANDED);
+    down[i] = -asin(v[4].direction[2]) / ABBE_DEGREE;
+    if (i == 2) assert_near(v[1].inside_n, 1.5171546, 5e-7);
+  }
+  assert_near(down[2], 10, 0.02);
+  assert_near(down[0], down[1], 0.002);
+}
