@@ -70,14 +70,16 @@ static void change_smoothly(const abbe_line *l, double t, const abbe_specular_tr
 
 /* An edge's function in a scene, on paths over the surfaces of known. */
 static double value_at(const abbe_line *l, size_t scene, const double at[2], const abbe_edge *e,
-                       const abbe_specular_tree *known) {
+                       abbe_specular_tree *known) {
   abbe_specular_tree *tree = &l->tree[3];
+  known->until = e->shadow ? SIZE_MAX : e->index;
   l->look(l, scene, at, known, tree);
+  known->until = SIZE_MAX;
   return abbe_edge_value(scene_of(l, scene), e, tree);
 }
 
 static double value_on(const abbe_line *l, double t, const abbe_edge *e,
-                       const abbe_specular_tree *known) {
+                       abbe_specular_tree *known) {
   double at[2] = {l->at[0], l->at[1]};
   at[l->axis] = t;
   return value_at(l, 0, at, e, known);
@@ -85,7 +87,7 @@ static double value_on(const abbe_line *l, double t, const abbe_edge *e,
 
 /* Where it is 0 between two places, by false position [DowellJarratt1971]; NAN: nowhere. */
 static double find_zero(const abbe_line *l, double low, double high, const abbe_edge *e,
-                        const abbe_specular_tree *known) {
+                        abbe_specular_tree *known) {
   double a = value_on(l, low, e, known), b = value_on(l, high, e, known);
   int side = 0;
   if (!(a * b < 0)) return NAN;
@@ -110,14 +112,25 @@ static double find_zero(const abbe_line *l, double low, double high, const abbe_
   return low + (high - low) * 0.5;
 }
 
-/* Where the jump between both ends of a span is likely to be; else NAN. */
+/* Whether nothing jumps between both ends of a span but what is too faint. Leaves the tree of the
+ * first end, and of the other what has met the same up to where it meets something else. */
+static bool is_smooth(const abbe_line *l, double low, double high) {
+  abbe_specular_tree *below = &l->tree[1], *above = &l->tree[2];
+  look(l, 0, low, NULL, below);
+  if (!below->whole) {
+    look(l, 0, high, NULL, above);
+    return false;
+  }
+  below->checks = true;
+  look(l, 0, high, below, above);
+  below->checks = false;
+  return !above->failed && above->steps == below->steps && above->shadows == below->shadows;
+}
+
+/* Where the jump of a span that is not smooth is likely to be; else NAN. */
 static double guess(const abbe_line *l, const jump *j) {
-  look(l, 0, j->low, NULL, &l->tree[1]);
-  look(l, 0, j->high, NULL, &l->tree[2]);
   const abbe_edge e = abbe_edge_between(l->base, &l->tree[1], &l->tree[2]);
-  if (e.kind == ABBE_EDGE_NONE) return NAN;
-  const double t = find_zero(l, j->low, j->high, &e, &l->tree[1]);
-  return isfinite(t) ? t : find_zero(l, j->low, j->high, &e, &l->tree[2]);
+  return e.kind == ABBE_EDGE_NONE ? NAN : find_zero(l, j->low, j->high, &e, &l->tree[1]);
 }
 
 static uint64_t signature_at(const abbe_line *l, double t) {
@@ -131,7 +144,7 @@ static size_t find_jumps(const abbe_line *l, const jump *first, jump *out) {
   size_t waiting = 1, found = 0;
   while (waiting > 0 && found < MOST_JUMPS) {
     const jump j = stack[--waiting];
-    if (j.below == j.above) continue;
+    if (j.below == j.above || is_smooth(l, j.low, j.high)) continue;
     if (j.high - j.low < CLOSE) {
       out[found++] = j;
       continue;
@@ -156,7 +169,7 @@ static size_t find_jumps(const abbe_line *l, const jump *first, jump *out) {
 
 /* Half the difference of a function over twice NEAR, along an axis. */
 static double slope_along(const abbe_line *l, int axis, double t, const abbe_edge *e,
-                          const abbe_specular_tree *known) {
+                          abbe_specular_tree *known) {
   double value[2];
   for (int i = 0; i < 2; i++) {
     double at[2] = {l->at[0], l->at[1]};
@@ -174,16 +187,15 @@ static void change_by_jump(const abbe_line *l, const jump *j) {
   const double t = 0.5 * (j->low + j->high);
   double at[2] = {l->at[0], l->at[1]};
   at[l->axis] = t;
-  look(l, 0, j->low, NULL, below);
-  look(l, 0, j->high, NULL, above);
+  is_smooth(l, j->low, j->high);
   const abbe_edge e = abbe_edge_between(l->base, below, above);
+  look(l, 0, j->high, NULL, above);
   if (e.kind == ABBE_EDGE_FAINT || (below->count == 0 && above->count == 0)) return;
   const double size = l->weight * (l->only_in(l, below, above) + l->only_in(l, above, below));
-  const abbe_specular_tree *known = below->whole ? below : above;
   double slope[2] = {NAN, NAN}, here = NAN, square = NAN;
   if (e.kind != ABBE_EDGE_NONE) {
-    for (int axis = 0; axis < 2; axis++) slope[axis] = slope_along(l, axis, t, &e, known);
-    here = value_at(l, 0, at, &e, known);
+    for (int axis = 0; axis < 2; axis++) slope[axis] = slope_along(l, axis, t, &e, below);
+    here = value_at(l, 0, at, &e, below);
     square = slope[0] * slope[0] + slope[1] * slope[1];
   }
   l->to->jumps += size;
@@ -192,8 +204,8 @@ static void change_by_jump(const abbe_line *l, const jump *j) {
     return;
   }
   for (size_t k = 0; k < l->keys; k++) {
-    double by = value_at(l, 2 + 2 * k, at, &e, known) - here;
-    if (!isfinite(by)) by = here - value_at(l, 1 + 2 * k, at, &e, known);
+    double by = value_at(l, 2 + 2 * k, at, &e, below) - here;
+    if (!isfinite(by)) by = here - value_at(l, 1 + 2 * k, at, &e, below);
     if (!isfinite(by)) l->to->lost += size / (double)l->keys;
     if (!(fabs(by) > 1e-12 * sqrt(square))) continue;
     const double speed = -2 * by * slope[l->axis] / (square * l->step[k]);

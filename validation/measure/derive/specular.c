@@ -59,7 +59,7 @@ bool abbe_specular_hides(const abbe_specular *s, abbe_specular_what what, const 
                          const abbe_specular_tree *known, abbe_specular_tree *tree) {
   abbe_meeting m = {.object = ABBE_SPECULAR_NOTHING};
   const size_t i = tree->shadows;
-  if (known != NULL && i < known->shadows) {
+  if (known != NULL && i < known->shadows && !known->checks) {
     m.object = known->shadow[i].object;
     m.face = known->shadow[i].face;
   } else if (limit > 0) {
@@ -78,6 +78,8 @@ bool abbe_specular_hides(const abbe_specular *s, abbe_specular_what what, const 
   memcpy(to->d, d, sizeof to->d);
   to->object = m.object;
   to->face = m.face;
+  if (known != NULL && known->checks && i < known->shadows)
+    tree->failed |= hidden != (known->shadow[i].object != ABBE_SPECULAR_NOTHING);
   return hidden;
 }
 
@@ -171,9 +173,9 @@ static bool find_next(walk *w, const path *p, abbe_meeting *m) {
   memcpy(step->d, p->d, sizeof step->d);
   step->sent[0] = step->sent[1] = 0;
   step->inside = p->inside;
-  if (w->known == NULL)
+  if (w->known == NULL || w->known->checks)
     abbe_specular_meet(w->s, p->o, p->d, p->inside, false, ABBE_SPECULAR_NOTHING, w->seen, m);
-  else if (i >= w->known->steps ||
+  else if (i >= w->known->steps || i > w->known->until ||
            !abbe_specular_meet_face(w->s, w->known->step[i].object, w->known->step[i].face, p->o,
                                     p->d, p->inside, m)) {
     t->failed = true;
@@ -185,7 +187,10 @@ static bool find_next(walk *w, const path *p, abbe_meeting *m) {
   step->on = 0;
   const uint64_t face = abbe_specular_face(w->s, m->object, m->face);
   abbe_specular_sign(t, 3 + (uint64_t)m->object * 64 + (face << 40));
-  return true;
+  if (w->known != NULL && w->known->checks)
+    t->failed = i >= w->known->steps || w->known->step[i].object != m->object ||
+                abbe_specular_face(w->s, m->object, w->known->step[i].face) != face;
+  return !t->failed;
 }
 
 static void step(walk *w, path *p) {
@@ -291,6 +296,8 @@ static void clear(abbe_specular_tree *t) {
   t->left = 0;
   memset(t->shown, 0, sizeof t->shown);
   t->whole = true;
+  t->until = SIZE_MAX;
+  t->checks = false;
   t->failed = false;
 }
 

@@ -133,6 +133,8 @@ typedef struct abbe_specular_tree {
   double faint;       /* flux below which they end */
   bool whole;         /* all steps and shadows are kept */
   bool failed;        /* a surface that was known is not met any more */
+  size_t until;       /* where it is known: paths end behind the step of that index */
+  bool checks;        /* where it is known: surfaces are searched for, and others are a failure */
   double at[2];       /* on the window or the film */
   double shown[3];    /* of the camera's paths: the colour that it sees */
   abbe_specular_hit hit[ABBE_SPECULAR_HITS];
