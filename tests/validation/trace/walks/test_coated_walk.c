@@ -89,6 +89,11 @@ TEST(a_pane_under_a_table_passes_what_the_film_does) {
     OK(abbe_file_write(path, text, (size_t)(end - text), &error));
     check_pane(printed("{file: %s, faces: table}", path), &films[i], 1, false, i ? 3 : 0);
   }
+  OWNED(abbe_scene, scene) = scene_of(printed(SCENE SLAB("n-bk7, coating: {file: %s}"), path));
+  abbe_tracer *tracer = NULL;
+  REFUSED(ABBE_UNSUPPORTED, "has no phases for polarised light: take --polarisation off",
+          abbe_tracer_make(&scene, &(abbe_trace_desc){.polarisation = ABBE_TRACE_POLARISATION_ON},
+                           &tracer, &error));
   unlink(path);
 }
 
