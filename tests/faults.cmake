@@ -6,7 +6,7 @@ target_link_libraries(faults_memory PUBLIC abbe_build PkgConfig::GSL PkgConfig::
   PkgConfig::EXPAT)
 foreach(name malloc calloc realloc aligned_alloc strdup strndup realpath fopen fdopen open_memstream
     newlocale yaml_parser_initialize yaml_parser_parse sqlite3_open_v2 sqlite3_prepare_v2
-    sqlite3_step sqlite3_serialize gsl_vector_alloc gsl_matrix_alloc gsl_interp_alloc
+    sqlite3_step sqlite3_serialize gsl_vector_alloc gsl_matrix_alloc gsl_eigen_symmv_alloc gsl_interp_alloc
     gsl_integration_workspace_alloc gsl_multifit_linear_alloc gsl_multifit_nlinear_alloc
     XML_ParserCreate)
   target_link_options(faults_memory INTERFACE LINKER:--wrap=${name})

@@ -88,6 +88,9 @@ static abbe_result encode(const char *path, const avifImage *image, abbe_error *
   return result;
 }
 
+/* libavif before 1.3 counts an image's bytes in 32 bits. */
+enum { MOST_PIXELS = ABBE_IMAGE_MAX_SIDE * (ABBE_IMAGE_MAX_SIDE / 8) };
+
 /* In full range and without sharing of colour among pixels (4:4:4). */
 abbe_result abbe_avif_write(const char *path, const abbe_image *image, int bits,
                             abbe_error *error) {
@@ -95,6 +98,10 @@ abbe_result abbe_avif_write(const char *path, const abbe_image *image, int bits,
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: PQ and HLG are written for the primaries of Rec.709, Rec.2020 or P3",
                           path);
+  if (image->width * image->height > MOST_PIXELS)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%s: an AVIF of %zu x %zu pixels is not written; up to %d can be", path,
+                          image->width, image->height, MOST_PIXELS);
   avifImage *out = avifImageCreate((uint32_t)image->width, (uint32_t)image->height, (uint32_t)bits,
                                    AVIF_PIXEL_FORMAT_YUV444);
   if (out == NULL)
@@ -157,7 +164,7 @@ static abbe_result decode(const char *path, avifDecoder *decoder, const char *da
   const avifTransformFlags turns = AVIF_TRANSFORM_CLAP | AVIF_TRANSFORM_IROT | AVIF_TRANSFORM_IMIR;
   avifResult done = avifDecoderSetIOMemory(decoder, (const uint8_t *)data, size);
   decoder->ignoreExif = decoder->ignoreXMP = AVIF_TRUE;
-  decoder->imageSizeLimit = ABBE_IMAGE_MAX_SIDE * (ABBE_IMAGE_MAX_SIDE / 8);
+  decoder->imageSizeLimit = MOST_PIXELS;
   if (done == AVIF_RESULT_OK) done = avifDecoderParse(decoder);
   if (done != AVIF_RESULT_OK) return unread(path, done, error);
   const avifImage *from = decoder->image;

@@ -54,7 +54,6 @@ char *abbe_cut_text_widen(const char *bytes, size_t size) {
 }
 
 void abbe_cut_free(abbe_cut *cut) {
-  if (!cut) return;
   for (int i = 0; i < ABBE_CUT_LINES; i++) {
     free(cut->heading[i]);
     free(cut->footnote[i]);

@@ -2,10 +2,12 @@
 
 #include "base/foreign_text.h"
 #include "base/number.h"
+#include "base/text.h"
 #include "scenes/cuts/cut.h"
 
 #include <ctype.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -332,7 +334,8 @@ static void write_number(FILE *to, double value, int digits) {
   double back = 0;
   const char *end;
   abbe_number_format(text, sizeof text, "%.*f", digits, value);
-  if (!abbe_number_read(text, &end, &back) || back != value) abbe_number_text(value, text);
+  abbe_number_read(text, &end, &back);
+  if (back != value) abbe_number_text(value, text);
   fputs(text, to);
 }
 
@@ -342,17 +345,22 @@ static void write_line(FILE *to, const char *key, const char *text) {
   fprintf(to, "%s %s\n", key, narrow);
 }
 
-/* A name is one word. */
+/* A name is one word, and its letters are bytes that are not read as UTF-8: of those some would be
+ * dropped, and the word with them. */
 static void write_name(FILE *to, const char *name, abbe_report *report) {
   char narrow[256];
   bool changed = false;
   abbe_cut_text_narrow(name, narrow, sizeof narrow);
-  for (char *c = narrow; *c != '\0'; c++)
+  for (char *c = narrow; *c != '\0'; c++) {
+    uint32_t code;
+    const size_t bytes = abbe_utf8_read((const unsigned char *)c, strlen(c), &code);
     if (*c == ' ') *c = '_', changed = true;
+    if (bytes > 1) memset(c, '?', bytes), changed = true;
+  }
   if (changed)
     abbe_report_add(report, ABBE_NOTE_CHANGED, 0, NULL, "a name is one word: '%s' is now '%s'",
                     name, narrow);
-  if (narrow[0] != '\0') fprintf(to, " n %s", narrow);
+  fprintf(to, " n %s", narrow);
 }
 
 static void write_tier(const abbe_cut *cut, size_t t, FILE *to, abbe_report *report) {

@@ -6,6 +6,7 @@
 #include "colorimetry/plot/chart_panel.h"
 #include "scenes/cuts/cut_stretch.h"
 
+#include <assert.h>
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
@@ -27,8 +28,10 @@ typedef struct sheet {
   const abbe_cut_polyhedron *p;
   abbe_cut_measures m;
   const char *note;
-  double n;    /* index of the stone; 0: not known */
-  double down; /* how far a long heading moves everything below it */
+  double n;      /* index of the stone; 0: not known */
+  double down;   /* how far a long heading moves everything below it */
+  double *index; /* [facets] of the tier that is put */
+  char *indices;
 } sheet;
 
 /* Where the stone's x, y, z is seen. */
@@ -64,7 +67,7 @@ static void trace_face(const sheet *s, const view *v, const abbe_cut_face *face)
   cairo_close_path(s->cr);
 }
 
-/* The middle of the face on the sheet, and how far from it the nearest edge is. */
+/* The middle on the sheet of a face that is seen, and how far from it the nearest edge is. */
 static double find_middle(const sheet *s, const view *v, const abbe_cut_face *face, double out[2]) {
   double area = 0, sum[2] = {0, 0}, first[2], a[2], b[2];
   place(v, corner(s, face, 0), first);
@@ -76,14 +79,13 @@ static double find_middle(const sheet *s, const view *v, const abbe_cut_face *fa
     for (int k = 0; k < 2; k++) sum[k] += part * (first[k] + a[k] + b[k]) / 3;
     area += part;
   }
-  for (int k = 0; k < 2; k++) out[k] = area != 0 ? sum[k] / area : first[k];
+  for (int k = 0; k < 2; k++) out[k] = sum[k] / area;
   double nearest = INFINITY;
   for (size_t i = 0; i < face->count; i++) {
     place(v, corner(s, face, i), a);
     place(v, corner(s, face, (i + 1) % face->count), b);
     const double x = b[0] - a[0], y = b[1] - a[1], length = hypot(x, y);
-    if (length > 0)
-      nearest = fmin(nearest, fabs(x * (out[1] - a[1]) - y * (out[0] - a[0])) / length);
+    nearest = fmin(nearest, fabs(x * (out[1] - a[1]) - y * (out[0] - a[0])) / length);
   }
   return nearest;
 }
@@ -153,7 +155,7 @@ static void draw_tick(const sheet *s, const double at[2], double index, bool mir
 /* Labels of facets that are drawn, none twice and none on top of another. */
 static void draw_wheel(const sheet *s, const double at[2], abbe_cut_side side) {
   const double turn = full_turn(s->cut), apart = turn * 8 / (2 * ABBE_PI * (wheel + 11));
-  double shown[ABBE_CUT_MAX_GEAR > 512 ? 512 : ABBE_CUT_MAX_GEAR];
+  double shown[128]; /* for they are eight points apart */
   size_t count = 0;
   abbe_chart_set_grey(s->cr, 0.6);
   cairo_set_line_width(s->cr, 0.5);
@@ -172,7 +174,8 @@ static void draw_wheel(const sheet *s, const double at[2], abbe_cut_side side) {
       const double off = fmod(fabs(shown[i] - index), turn);
       is_there |= fmin(off, turn - off) < apart;
     }
-    if (is_there || count == sizeof shown / sizeof *shown) continue;
+    if (is_there) continue;
+    assert(count < sizeof shown / sizeof *shown);
     shown[count++] = index;
     draw_tick(s, at, index, side == ABBE_CUT_PAVILION, true);
   }
@@ -312,25 +315,20 @@ static int by_turn(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* A tier's indices with a face, "96 12 24 …", ascending from the gear's own; malloc'd. */
-static char *list_indices(const sheet *s, size_t t) {
+/* A tier's indices with a face, "96 12 24 …", ascending from the gear's own. */
+static void list_indices(const sheet *s, size_t t) {
   const abbe_cut_tier *tier = &s->cut->tier[t];
-  double *index = malloc((tier->count + 1) * sizeof *index);
-  char *text = malloc((tier->count + 1) * ABBE_NUMBER_TEXT_SIZE), one[ABBE_NUMBER_TEXT_SIZE];
+  char one[ABBE_NUMBER_TEXT_SIZE];
   size_t count = 0, used = 0;
-  for (size_t i = 0; index != NULL && text != NULL && i < tier->count; i++)
+  for (size_t i = 0; i < tier->count; i++)
     if (s->p->fate[tier->first + i] == ABBE_CUT_FACE)
-      index[count++] =
+      s->index[count++] =
           fmod(in_turn(s->cut, s->cut->facet[tier->first + i].index), full_turn(s->cut));
-  if (index != NULL && text != NULL) {
-    text[0] = '\0';
-    qsort(index, count, sizeof *index, by_turn);
-    for (size_t i = 0; i < count; i++)
-      used += (size_t)sprintf(text + used, "%s%s", i > 0 ? " " : "",
-                              abbe_number_text(abbe_number_tidy(in_turn(s->cut, index[i])), one));
-  }
-  free(index);
-  return text;
+  s->indices[0] = '\0';
+  qsort(s->index, count, sizeof *s->index, by_turn);
+  for (size_t i = 0; i < count; i++)
+    used += (size_t)sprintf(s->indices + used, "%s%s", i > 0 ? " " : "",
+                            abbe_number_text(abbe_number_tidy(in_turn(s->cut, s->index[i])), one));
 }
 
 /* Its names, one after another, none twice running. */
@@ -356,15 +354,14 @@ static const double columns[] = {40, 92, 140, 400}; /* names, angle, indices, in
 static double put_tier(const sheet *s, size_t t, double y, bool draw) {
   const abbe_cut_tier *tier = &s->cut->tier[t];
   char names[120], angle[40];
-  char *indices = list_indices(s, t);
+  list_indices(s, t);
   list_names(s, t, names, sizeof names);
   abbe_number_format(angle, sizeof angle, "%.2f°", fabs(tier->angle_deg));
   abbe_chart_set_font(s->cr, 8, false);
   abbe_chart_set_grey(s->cr, 0.1);
   double end = put_words(s, names, columns[0], y, columns[1] - columns[0] - 6, draw);
   if (draw) abbe_chart_put_text(s->cr, angle, columns[2] - 14, y, 1, 1);
-  if (indices != NULL)
-    end = fmax(end, put_words(s, indices, columns[2], y, columns[3] - columns[2] - 12, draw));
+  end = fmax(end, put_words(s, s->indices, columns[2], y, columns[3] - columns[2] - 12, draw));
   if (tier->instruction != NULL)
     end = fmax(end, put_words(s, tier->instruction, columns[3], y, page_width - margin - columns[3],
                               draw));
@@ -374,7 +371,6 @@ static double put_tier(const sheet *s, size_t t, double y, bool draw) {
                               tier->instruction != NULL ? end : y, page_width - margin - columns[3],
                               draw));
   }
-  free(indices);
   return end;
 }
 
@@ -484,6 +480,13 @@ abbe_result abbe_cut_diagram_write(const char *path, const abbe_cut *cut,
                           "%s: a diagram wants a name that ends with .pdf, .svg or .png", path);
   abbe_cut_measures_make(cut, polyhedron, &s.m);
   ABBE_TRY(abbe_file_writer_open(&writer, path, error));
-  abbe_result result = write_sheet(&s, path, writer.stream, error);
+  s.index = malloc(cut->facet_count * sizeof *s.index);
+  s.indices = malloc(cut->facet_count * ABBE_NUMBER_TEXT_SIZE);
+  abbe_result result = ABBE_OK;
+  if (s.index == NULL || s.indices == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for a diagram", path);
+  if (result == ABBE_OK) result = write_sheet(&s, path, writer.stream, error);
+  free(s.index);
+  free(s.indices);
   return abbe_file_writer_end(&writer, result, error);
 }

@@ -29,7 +29,7 @@ typedef struct reading {
 
 /* The first failure holds; the parser goes no further. */
 static void stop(reading *r, abbe_result code) {
-  if (r->result == ABBE_OK) r->result = code;
+  r->result = code;
   XML_StopParser(r->parser, XML_FALSE);
 }
 
@@ -49,7 +49,7 @@ fail(reading *r, abbe_result code, const char *format, ...) {
 }
 
 static void no_memory(reading *r) {
-  if (r->result == ABBE_OK) abbe_error_set(r->error, ABBE_NO_MEMORY, "no memory for a design");
+  abbe_error_set(r->error, ABBE_NO_MEMORY, "no memory for a design");
   stop(r, ABBE_NO_MEMORY);
 }
 
@@ -266,7 +266,7 @@ static void XMLCALL end(void *data, const XML_Char *element) {
   if (r->result != ABBE_OK) return;
   r->depth--;
   if (r->depth == 2 && r->in_facet) end_facet(r);
-  if (r->depth != 1 || !r->in_tier || r->result != ABBE_OK) return;
+  if (r->depth != 1 || !r->in_tier) return;
   end_tier(r, d->tier_name);
   d->tier_name = NULL;
 }

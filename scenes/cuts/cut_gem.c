@@ -253,10 +253,7 @@ static void put_text(FILE *to, const char *text, const char *second, abbe_report
   if (second) rest = abbe_cut_text_narrow(second, narrow[1], sizeof narrow[1]);
   if (first + rest > room)
     abbe_report_add(report, ABBE_NOTE_LOST, 0, NULL, "a text beyond %d bytes is cut: '%.80s'",
-                    MOST_TEXT,
-                    first > room ? text
-                    : second     ? second
-                                 : text);
+                    MOST_TEXT, first > room ? text : second);
   if (first > room) first = room;
   if (rest > room - first) rest = room - first;
   putc((int)(first + rest + (second != NULL)), to);

@@ -321,9 +321,7 @@ static abbe_result settle(work *w, const double *change, abbe_cut_polyhedron *mo
     return abbe_error_set(error, ABBE_GEOMETRY, "the meets cannot be kept so far from the design");
   ABBE_TRY(abbe_cut_polyhedron_make(w->cut, 0, moved, error));
   const abbe_cut_polyhedron *p = w->p;
-  if (moved->face_count == p->face_count && moved->vertex_count == p->vertex_count &&
-      moved->edge_count == p->edge_count)
-    return ABBE_OK;
+  if (moved->face_count == p->face_count && moved->vertex_count == p->vertex_count) return ABBE_OK;
   abbe_cut_polyhedron_free(moved);
   return abbe_error_set(error, ABBE_GEOMETRY, "facets or corners would come or go");
 }

@@ -29,7 +29,6 @@ typedef struct work {
 } work;
 
 void abbe_cut_polyhedron_free(abbe_cut_polyhedron *p) {
-  if (!p) return;
   free(p->vertex);
   free(p->face);
   free(p->corner);
@@ -321,7 +320,7 @@ static abbe_result close_faces(abbe_cut_polyhedron *p, double share, abbe_error 
       edge[count++] = (uint64_t)corner[k] << 32 | corner[(k + 1) % p->face[f].count];
     }
   qsort(edge, count, sizeof *edge, by_value);
-  bool closed = count % 2 == 0 && count >= 12;
+  bool closed = p->face_count >= 4;
   for (size_t i = 0; i < count && closed; i++) {
     const uint64_t back = edge[i] << 32 | edge[i] >> 32;
     closed = (i == 0 || edge[i] != edge[i - 1]) &&

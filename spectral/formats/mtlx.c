@@ -247,6 +247,15 @@ static void end(void *user, const char *element) {
   if (result != ABBE_OK) stop(r, result);
 }
 
+/* Whatever has one may have entities and attributes without end. */
+static void XMLCALL refuse_type(void *user, const XML_Char *name, const XML_Char *system,
+                                const XML_Char *public, int internal) {
+  reading *r = user;
+  (void)name, (void)system, (void)public, (void)internal;
+  stop(r, abbe_error_set(r->error, ABBE_PARSE, "%s:%zu: a MaterialX document has no <!DOCTYPE",
+                         r->path, abbe_xml_line(r->parser)));
+}
+
 abbe_result abbe_mtlx_parse(const char *text, size_t size, const char *path,
                             abbe_material_table *out, abbe_report *report, abbe_error *error) {
   reading r = {
@@ -254,6 +263,7 @@ abbe_result abbe_mtlx_parse(const char *text, size_t size, const char *path,
   if (r.parser == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", path);
   XML_SetUserData(r.parser, &r);
   XML_SetElementHandler(r.parser, begin, end);
+  XML_SetStartDoctypeDeclHandler(r.parser, refuse_type);
   if (XML_Parse(r.parser, text, (int)size, XML_TRUE) != XML_STATUS_OK && r.result == ABBE_OK) {
     const enum XML_Error code = XML_GetErrorCode(r.parser);
     r.result = abbe_error_set(error, code == XML_ERROR_NO_MEMORY ? ABBE_NO_MEMORY : ABBE_PARSE,

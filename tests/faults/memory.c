@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <expat.h>
+#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
 #include <gsl/gsl_interp.h>
@@ -102,6 +103,7 @@ WRAP(unsigned char *, sqlite3_serialize,
 
 WRAP(gsl_vector *, gsl_vector_alloc, (size_t n), (n), NULL)
 WRAP(gsl_matrix *, gsl_matrix_alloc, (size_t n, size_t m), (n, m), NULL)
+WRAP(gsl_eigen_symmv_workspace *, gsl_eigen_symmv_alloc, (size_t n), (n), NULL)
 WRAP(gsl_interp *, gsl_interp_alloc, (const gsl_interp_type *type, size_t n), (type, n), NULL)
 WRAP(gsl_integration_workspace *, gsl_integration_workspace_alloc, (size_t n), (n), NULL)
 WRAP(gsl_multifit_linear_workspace *, gsl_multifit_linear_alloc, (size_t n, size_t p), (n, p), NULL)

@@ -7,25 +7,27 @@
 enum { CALLS = 16 };
 
 static struct {
-  size_t wanted, most, calls; /* the allocation that fails, the most a call makes, calls so far */
+  size_t call, wanted;        /* which call is starved, of which allocation; 0: none */
+  size_t calls, count[CALLS]; /* calls so far, and what each allocates when none fails */
   bool every;
   abbe_result whole[CALLS]; /* what the calls hand back and make when none fails */
   uint64_t made[CALLS];
 } now;
 
 void fuzz_begin(void) {
-  faults_memory_begin(now.wanted, now.every);
+  faults_memory_begin(now.calls == now.call ? now.wanted : 0, now.every);
 }
 
 abbe_result fuzz_end(abbe_result result, const abbe_error *error) {
   const size_t count = faults_memory_end();
   FUZZ_PROMISE(now.calls < CALLS);
-  abbe_result *whole = &now.whole[now.calls++];
+  abbe_result *whole = &now.whole[now.calls];
   if (now.wanted == 0) {
     *whole = result;
-    if (count > now.most) now.most = count;
-    return result;
+    now.count[now.calls] = count;
   }
+  now.calls++;
+  if (now.wanted == 0) return result;
   const bool starved = faults_memory_failed() > 0 &&
                        (result == ABBE_NO_MEMORY ||
                         (result == ABBE_IO && strstr(error->text, "Cannot allocate memory")));
@@ -53,26 +55,34 @@ void fuzz_same(const void *data, size_t size) {
   FUZZ_PROMISE(*whole == made);
 }
 
-static void feed(const uint8_t *data, size_t size, size_t wanted, bool every) {
-  now.wanted = wanted;
+/* Returns how many allocations all calls made. */
+static size_t feed_whole(const uint8_t *data, size_t size) {
+  size_t all = 0;
+  now.wanted = now.calls = 0;
+  fuzz_input(data, size);
+  for (size_t i = 0; i < now.calls; i++) all += now.count[i];
+  return all;
+}
+
+/* With the n-th of them failing, from 0. */
+static void feed_starved(const uint8_t *data, size_t size, size_t n, bool every) {
+  for (now.call = 0; n >= now.count[now.call]; now.call++) n -= now.count[now.call];
+  now.wanted = 1 + n;
   now.every = every;
   now.calls = 0;
   fuzz_input(data, size);
 }
 
 size_t fuzz_starve(const uint8_t *data, size_t size, size_t tries) {
-  now.most = 0;
-  feed(data, size, 0, false);
-  const size_t count = now.most, tried = tries < count ? tries : count;
+  const size_t count = feed_whole(data, size), tried = tries < count ? tries : count;
   for (size_t k = 0; k < tried; k++)
-    for (int every = 0; every < 2; every++) feed(data, size, 1 + k * count / tried, every == 1);
+    for (int every = 0; every < 2; every++) feed_starved(data, size, k * count / tried, every == 1);
   return 2 * tried;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   const uint64_t h = hash(data, size);
-  now.most = 0;
-  feed(data, size, 0, false);
-  if (now.most > 0 && h >> 62 == 0) feed(data, size, 1 + h % now.most, (h >> 61 & 1) != 0);
+  const size_t count = feed_whole(data, size);
+  if (count > 0 && h >> 62 == 0) feed_starved(data, size, h % count, (h >> 61 & 1) != 0);
   return 0;
 }

@@ -12,6 +12,9 @@
 #include "colorimetry/weights.h"
 #include "gl/accuracy/preset.h"
 #include "gl/plan/plan.h"
+#include "scenes/cuts/cut_file.h"
+#include "scenes/cuts/cut_meets.h"
+#include "scenes/cuts/cut_stretch.h"
 #include "scenes/environment/environment_source.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/mesh/mesh.h"
@@ -288,6 +291,60 @@ static abbe_result maps(abbe_error *error) {
   return result;
 }
 
+/* ---- stones ---- */
+
+static abbe_result write_design(const abbe_cut *cut, const abbe_cut_polyhedron *p, int kind,
+                                char **text, size_t *size, abbe_error *error) {
+  FILE *to = open_memstream(text, size);
+  if (to == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a test");
+  const abbe_result result =
+      kind == 0   ? abbe_cut_asc_write(cut, to, NULL, error)
+      : kind == 1 ? abbe_cut_gem_write(cut, p, to, NULL, error)
+      : kind == 2 ? abbe_cut_gcs_write(cut, p, to, NULL, error)
+                  : abbe_cut_solid_write(cut, p, 1, NULL, ABBE_CUT_SOLID_GLB, to, error);
+  fclose(to);
+  if (result == ABBE_OK) digest(*text, *size);
+  return result;
+}
+
+/* Out and in again as each kind of design, then as a solid. */
+static abbe_result kinds_of(const abbe_cut *cut, const abbe_cut_polyhedron *p, abbe_error *error) {
+  static abbe_result (*const parse[])(const char *data, size_t size, const char *name,
+                                      abbe_cut *out, abbe_report *report, abbe_error *error) = {
+      abbe_cut_asc_parse, abbe_cut_gem_parse, abbe_cut_gcs_parse};
+  abbe_result result = ABBE_OK;
+  for (int i = 0; i < 4 && result == ABBE_OK; i++) {
+    FREED char *text = NULL;
+    size_t size = 0;
+    abbe_cut back = {0};
+    result = write_design(cut, p, i, &text, &size, error);
+    if (result == ABBE_OK && i < 3) result = parse[i](text, size, "it", &back, NULL, error);
+    if (result == ABBE_OK) digest(&back.facet_count, sizeof back.facet_count);
+    abbe_cut_free(&back);
+  }
+  return result;
+}
+
+static abbe_result stone(abbe_error *error) {
+  static const char text[] = "g 96 0\nH box\na 90 1 96 n G 24 n H 48 72 G saw\nG and polish\n"
+                             "a 0 1 n T\na -0 1\na -45 1.2 96 24 48 72\n";
+  OWNED(abbe_cut, cut) = {0};
+  OWNED(abbe_cut_polyhedron, p) = {0}, moved = {0};
+  OWNED(abbe_cut_meets, meets) = {0};
+  double change[32] = {0};
+  abbe_result result = abbe_cut_asc_parse(text, sizeof text - 1, "it", &cut, NULL, error);
+  if (result == ABBE_OK) result = abbe_cut_polyhedron_make(&cut, 0, &p, error);
+  if (result == ABBE_OK) result = kinds_of(&cut, &p, error);
+  if (result == ABBE_OK) result = abbe_cut_meets_make(&cut, &p, &meets, error);
+  for (size_t s = 0; result == ABBE_OK && s < meets.scalars; s++) change[s] = 0.01 * meets.free[s];
+  if (result == ABBE_OK) result = abbe_cut_meets_move(&cut, &p, change, &moved, error);
+  if (result == ABBE_OK) result = abbe_cut_stretch_to(&cut, &p, 0, 43, error);
+  if (result == ABBE_OK)
+    result = abbe_cut_diagram_write(operation_path("sheet.pdf"), &cut, &p, NULL, 1.5, error);
+  digest(&meets.freedoms, sizeof meets.freedoms);
+  return result;
+}
+
 GROUP(operation_setup, operation_teardown);
 
 TEST(pictures) {
@@ -304,6 +361,7 @@ TEST(scenes) {
       {"shapes", shapes, 0},
       {"meshes", meshes, 40},
       {"fix", fix, 0},
+      {"stone", stone, 0},
       {"scene of shapes", scene_shapes, 300},
       {"scene of a gem", scene_gem, 100},
       {"scene of files", scene_files, 40},

@@ -290,6 +290,9 @@ TEST(broken_files_are_said) {
   REFUSED(ABBE_PARSE, "a.avif: it cannot be read as AVIF", abbe_avif_read(path, &none, &error));
   REFUSED(ABBE_IO, "", abbe_avif_read("/no/such.avif", &none, &error));
   assert_null(none.data);
+  abbe_image large = image; /* one line beyond what is written; its pixels are not looked at */
+  large.width = ABBE_IMAGE_MAX_SIDE, large.height = ABBE_IMAGE_MAX_SIDE / 8 + 1;
+  REFUSED(ABBE_UNSUPPORTED, "up to 134217728 can be", abbe_avif_write(path, &large, 10, &error));
 }
 
 /* A power of 2.4 has no code that decoders agree on: a profile says it. */

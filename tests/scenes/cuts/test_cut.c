@@ -76,8 +76,14 @@ TEST(what_no_stone_has_is_refused) {
   cut.facet[8].d = INFINITY;
   REFUSED(ABBE_SCHEMA, "lies inf from the centre", abbe_cut_check(&cut, &error));
   cut.facet[8].d = 1;
-  cut.gear = 0;
-  REFUSED(ABBE_SCHEMA, "teeth", abbe_cut_check(&cut, &error));
+  cut.facet[7].index = NAN;
+  REFUSED(ABBE_SCHEMA, "facet 8 faces no direction", abbe_cut_check(&cut, &error));
+  const int gears[] = {0, ABBE_CUT_MAX_GEAR + 1, 96};
+  for (int i = 0; i < 3; i++) {
+    cut.gear = gears[i];
+    cut.offset = i == 2 ? INFINITY : 0;
+    REFUSED(ABBE_SCHEMA, "teeth", abbe_cut_check(&cut, &error));
+  }
 }
 
 TEST(letters_of_windows_1252_become_a_byte_each) {
@@ -86,6 +92,8 @@ TEST(letters_of_windows_1252_become_a_byte_each) {
   assert_string_equal(out, "a\xe9\x80\xb0");
   assert_int_equal(abbe_cut_text_narrow("\xe2\x88\x92\n\x7f", out, sizeof out), 3);
   assert_string_equal(out, "?  ");
+  assert_int_equal(abbe_cut_text_narrow("\xc2\x85", out, sizeof out), 1);
+  assert_string_equal(out, "?");
   assert_int_equal(abbe_cut_text_narrow("\xff", out, sizeof out), 1);
   assert_string_equal(out, "?");
   assert_int_equal(abbe_cut_text_narrow("abcdef", out, 4), 3);

@@ -62,6 +62,11 @@ TEST(odd_lines_are_met) {
   expect_notes("g 96 0\ng 96 0\nweather is fine\n" CUBE, "the last one holds", "weather");
   expect_notes("g 96 0\ny -8 y\ny 8.5 n\n" CUBE, "'-8 y'", "'8.5 n' is no number of folds");
   expect_notes("g 96 0\na 30 -4 96 what n\n" CUBE, "magnitude", "'what'");
+  expect_notes("g 96 0\ny 2000 n\na 30 1 96 nano\n" CUBE, "'2000 n'", "'nano' is neither");
+  expect_notes("g\t96\t0\n# a remark\ny 8\tY\nI 200\n" CUBE, "index of 200", "");
+  abbe_cut_free(&cut);
+  cut = design_parse("g\t96\t0\n# a remark\ny 8\tY\n" CUBE);
+  assert_true(cut.folds == 8 && cut.mirror);
   expect_notes("g 96 0\nI 0.5\nH 1\nH 2\nH 3\nH 4\nH five\n" CUBE, "index of 0.5", "five");
 }
 
@@ -93,6 +98,9 @@ TEST(bad_files_are_refused_with_the_line) {
   refuse("g 96 0\na 45 1 1e999\n", "x.asc:2: '1e999' is no index");
   refuse("g 96 0\na 45 1 96\n3,5 24\n", "x.asc:3: '3,5' is no index");
   refuse("g 96 0\na 45 1 3 1/2\n", "x.asc:2: '1/2' is no index");
+  refuse("g 96 0\na 45 1 3 +1/2\n", "x.asc:2: '+1/2' is no index");
+  refuse("g 96 0\na 45 1 +inf\n", "x.asc:2: '+inf' is no index");
+  refuse("g 96 1e7\n", "x.asc:1: the gear's offset 1e+07 is not an index");
   refuse("g 96 0\na 45 1 1e7\n", "x.asc:2: 1e+07 is no index");
   refuse("g 96 0\na 45 1 96 24 48\n", "3 facets enclose nothing");
   abbe_cut cut;
@@ -141,6 +149,27 @@ TEST(what_is_written_reads_back) {
     FREED char *again = written(&back);
     assert_string_equal(text, again);
   }
+}
+
+/* The letters of a name, a byte each, must not come back as one that is dropped. */
+TEST(names_that_look_like_utf_8_are_changed) {
+  static const char *const names[] = {"\xc3\xaf\xc2\xbb\xc2\xbf", "\xc3\x82\xe2\x80\xa6"};
+  for (int i = 0; i < 2; i++) {
+    OWNED(abbe_cut, cut) = design_parse(printed("g 96 0\n%sa 45 1 96 n %s 24\n", CUBE, names[i]));
+    FREED char *text = written(&cut);
+    assert_contains(text, i == 0 ? "n ??? 24" : "n ?? 24");
+    OWNED(abbe_cut, back) = design_parse(text);
+    assert_int_equal(back.facet_count, 8);
+  }
+}
+
+/* 25 facets of a tier: a line has 24. */
+TEST(long_tiers_go_on_below) {
+  char text[400] = "g 96 0\na 0 1\na -0 1\na 90 1";
+  for (int i = 1; i <= 25; i++) strcat(text, printed(" %d", i));
+  OWNED(abbe_cut, cut) = design_parse(text);
+  FREED char *back = written(&cut);
+  assert_contains(back, " 24\n25\n");
 }
 
 TEST(gemcads_own_digits_stay) {

@@ -3,6 +3,8 @@
 #include "scenes/cuts/cut_polyhedron.h"
 #include "tests/scenes/cuts/designs.h"
 
+#include <limits.h>
+
 /* A pyramid: a table, four mains of 45 degrees below, cut off by four girdle facets. */
 #define HEAD                                                                                       \
   "<GemCutStudio version=\"1000\">\n<index gear=\"80\" base=\"5\" symmetry=\"4\" mirror=\"1\"/>\n"
@@ -69,6 +71,42 @@ TEST(a_missing_normal_is_found) {
       assert_near(without.facet[i].n[axis], with.facet[i].n[axis], 1e-15);
 }
 
+TEST(indices_and_mirrors_are_heeded) {
+  OWNED(abbe_cut, cut) = read("<GemCutStudio><index gear='80' symmetry='4' mirror='true'/>"
+                              "<info title=''/>" TABLE REST);
+  assert_true(cut.mirror && cut.folds == 4);
+  abbe_cut_free(&cut);
+  cut = read(printed("%.*s<render refractive_index='200'/></GemCutStudio>",
+                     (int)(strstr(HEAD TABLE REST, "<render") - HEAD TABLE REST), HEAD TABLE REST));
+  assert_near(cut.refractive_index, 0, 0);
+}
+
+/* Facets of one tier at two depths say them by their corners; letters that XML has for itself are
+ * written as numbers; a plane beyond the axis' middle cannot be said. */
+TEST(what_only_some_designs_have_is_written) {
+  OWNED(abbe_cut, cut) = design_parse("g 96 0\na 90 1 96 24 48 72\na 0 1\na -0 1\na 45 9 96\n"
+                                      "F one\nF two\nF three\n");
+  OWNED(abbe_report, report) = {0};
+  cut.facet[1].d = 1.25;
+  cut.heading[0] = strdup("a<b>&\"c\"\td");
+  FREED char *text = NULL;
+  size_t size = 0;
+  FILE *to = open_memstream(&text, &size);
+  MADE(abbe_cut_polyhedron, p, abbe_cut_polyhedron_make(&cut, 0, &p, &error));
+  OK(abbe_cut_gcs_write(&cut, &p, to, &report, &error));
+  assert_int_equal(fclose(to), 0);
+  assert_int_equal(report.kinds[ABBE_NOTE_LOST], 1); /* the third line at the foot */
+  assert_contains(text, "<tier angle=\"90\">");
+  OWNED(abbe_cut, back) = read(text);
+  assert_int_equal(back.facet_count, 6); /* what cuts nothing has no corners to say it by */
+  assert_string_equal(back.heading[0], "a<b>&\"c\" d");
+  abbe_cut_polyhedron_free(&p);
+  abbe_cut_free(&cut);
+  cut = design_parse("g 96 0\na 90 1 96 24 48 72\na 0 0.1 96\na -30 0.1 96\n");
+  OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
+  REFUSED(ABBE_GEOMETRY, "write .asc", abbe_cut_gcs_write(&cut, &p, stderr, NULL, &error));
+}
+
 /* The symmetry tells people something, and stones nothing. */
 TEST(a_strange_symmetry_is_passed_over) {
   static const char *const said[] = {"symmetry='-1'", "symmetry='2.5'", "symmetry='round'",
@@ -109,6 +147,43 @@ TEST(bad_files_are_refused) {
          "<tier angle='45'><facet index_angle='0'><vertex x='1'/></facet></tier></GemCutStudio>",
          ABBE_SCHEMA, "a 'vertex' has x, y and z");
   refuse("<GemCutStudio><index gear='0'/></GemCutStudio>", ABBE_SCHEMA, "a gear has 1 to");
+  refuse("<GemCutStudio><index gear='2.5'/></GemCutStudio>", ABBE_SCHEMA, "a gear has 1 to");
+  refuse("<GemCutStudio><index gear='1e9'/></GemCutStudio>", ABBE_SCHEMA, "a gear has 1 to");
+  refuse(HEAD "<tier angle='45'><facet index_angle='0'><vertex x='a' y='b'/></facet></tier>",
+         ABBE_SCHEMA, "'x' is a number, not 'a'");
+  refuse(HEAD "<tier angle='45' depth='1e9 '><facet nx='0' ny='0' nz='0' index_angle='0'/></tier>",
+         ABBE_SCHEMA, "1e+09 from the centre");
+  refuse(HEAD "<tier angle='45'><facet><vertex x='1' y='1' z='1'/></facet></tier>", ABBE_SCHEMA,
+         "no direction");
+  refuse("<?xml version=\"1.0\" encoding=\"windows-1252-and-more\"?><GemCutStudio/>", ABBE_PARSE,
+         "unknown encoding");
+  abbe_cut cut;
+  REFUSED(ABBE_PARSE, "no design is as long",
+          abbe_cut_gcs_parse("", (size_t)INT_MAX + 1, "x.gcs", &cut, NULL, &error));
+}
+
+TEST(too_many_facets_are_refused) {
+  FREED char *text = calloc(1, 64 + 4097 * 32);
+  char *at = text + sprintf(text, HEAD "<tier angle='45' depth='1'>");
+  for (int i = 0; i < 4097; i++) at += sprintf(at, "<facet index_angle='%d'/>", i);
+  strcpy(at, "</tier>");
+  refuse(text, ABBE_UNSUPPORTED, "more than 4096 facets");
+}
+
+/* Both orders of the bytes of UTF-16, told by its mark. */
+TEST(utf_16_is_read) {
+  const char *text = "<GemCutStudio>" TABLE REST;
+  for (int big = 0; big < 2; big++) {
+    char wide[8192];
+    size_t size = 0;
+    for (const char *c = printed("%c%s", 1, text); *c != '\0'; c++, size += 2) {
+      wide[size + (size_t)big] = (char)(*c == 1 ? 0xff : *c);
+      wide[size + 1 - (size_t)big] = (char)(*c == 1 ? 0xfe : 0);
+    }
+    if (big) wide[0] = (char)0xfe, wide[1] = (char)0xff;
+    MADE(abbe_cut, cut, abbe_cut_gcs_parse(wide, size, "x.gcs", &cut, NULL, &error));
+    assert_int_equal(cut.facet_count, 9);
+  }
 }
 
 TEST(what_reaches_outside_is_refused) {

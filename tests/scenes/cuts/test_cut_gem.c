@@ -122,6 +122,64 @@ TEST(hostile_values_are_refused) {
   free(f.data);
 }
 
+/* A table and a culet under one key are two tiers, as are two distances; more facets than a stone
+ * has are refused; folds and indices that no stone has are left out. */
+TEST(odd_files_are_met) {
+  OWNED(abbe_cut, cut) = design_parse("g 96 0\nI 1.5\na 90 1 96 24 48 72\na 0 1\na -0 1\n");
+  file f = written(&cut);
+  const size_t sides = 4 * (24 + 4 + 2 + 4 * 28 + 4), record = 24 + 4 + 2 + 4 * 28 + 4;
+  const double half = 2, index = 200;
+  memcpy(f.data + sides + 24, "\3\0\0\0", 4);
+  memcpy(f.data + sides + record + 24, "\3\0\0\0", 4);
+  for (int k = 0; k < 3; k++) {
+    double p;
+    memcpy(&p, f.data + 8 * k, sizeof p);
+    p *= half;
+    memcpy(f.data + 8 * k, &p, sizeof p);
+  }
+  memcpy(f.data + 6 * record + 8, "\xd0\7\0\0", 4);
+  memcpy(f.data + 6 * record + 20, &index, 8);
+  MADE(abbe_cut, back, abbe_cut_gem_parse(f.data, f.size, "x.gem", &back, NULL, &error));
+  assert_int_equal(back.tier_count, 4);
+  assert_near(back.tier[0].distance, 0.5, 1e-12);
+  assert_int_equal(back.folds, 0);
+  assert_near(back.refractive_index, 0, 0);
+  FREED char *few = malloc(f.size);
+  memcpy(few, f.data + 3 * record, f.size - 3 * record);
+  abbe_cut none;
+  REFUSED(ABBE_SCHEMA, "x.gem: 3 facets enclose nothing",
+          abbe_cut_gem_parse(few, f.size - 3 * record, "x.gem", &none, NULL, &error));
+  FREED char *many = malloc(4097 * record);
+  for (size_t i = 0; i < 4097; i++) memcpy(many + i * record, f.data, record);
+  REFUSED(ABBE_UNSUPPORTED, "more than 4096 facets",
+          abbe_cut_gem_parse(many, 4097 * record, "x.gem", &none, NULL, &error));
+  free(f.data);
+}
+
+/* A facet that cuts nothing, at the end, has no corners. */
+TEST(dead_facets_are_kept) {
+  OWNED(abbe_cut, cut) = design_parse("g 96 0\na 90 1 96 24 48 72\na 0 1\na -0 1\na 45 9 96\n");
+  file f = written(&cut);
+  MADE(abbe_cut, back, abbe_cut_gem_parse(f.data, f.size, "x.gem", &back, NULL, &error));
+  assert_int_equal(back.facet_count, 7);
+  free(f.data);
+}
+
+/* A name alone is as long as a name may be, or cut. */
+TEST(long_names_are_cut_and_told) {
+  char text[700] = "g 96 0\nH ";
+  memset(text + strlen(text), 'h', 300);
+  strcat(text, "\na 0 1 n ");
+  memset(text + strlen(text), 'x', 300);
+  strcat(text, "\na 90 1 96 24 48 72\na -0 1\n");
+  OWNED(abbe_cut, cut) = design_parse(text);
+  file f = written(&cut);
+  MADE(abbe_cut, back, abbe_cut_gem_parse(f.data, f.size, "x.gem", &back, NULL, &error));
+  assert_int_equal(strlen(back.facet[0].name), 254);
+  assert_int_equal(strlen(back.heading[0]), 255);
+  free(f.data);
+}
+
 TEST(long_texts_are_cut_and_told) {
   char text[700] = "g 96 0\na 0 1 n K G ";
   memset(text + strlen(text), 'x', 400);

@@ -21,6 +21,36 @@ TEST(known_freedoms) {
   }
 }
 
+/* However far along each freedom: the stone with all that it had, or a sentence and the design as
+ * it was. */
+TEST(any_way_along_a_freedom_holds_or_is_refused) {
+  const char *const designs[] = {design_a, design_c, design_d};
+  size_t moved_count = 0, refused = 0;
+  for (size_t i = 0; i < 3; i++) {
+    OWNED(abbe_cut, cut) = design_parse(designs[i]);
+    MADE(abbe_cut_polyhedron, p, abbe_cut_polyhedron_make(&cut, 0, &p, &error));
+    MADE(abbe_cut_meets, meets, abbe_cut_meets_make(&cut, &p, &meets, &error));
+    for (size_t f = 0; f < meets.freedoms; f++)
+      for (double by = 0.02; by < 50; by *= -1.7) {
+        OWNED(abbe_cut, other) = design_parse(designs[i]);
+        OWNED(abbe_cut_polyhedron, moved) = {0};
+        double change[64] = {0};
+        for (size_t s = 0; s < meets.scalars; s++)
+          change[s] = by * meets.free[f * meets.scalars + s];
+        abbe_error error = {0};
+        const abbe_result result = abbe_cut_meets_move(&other, &p, change, &moved, &error);
+        moved_count += result == ABBE_OK;
+        refused += result == ABBE_GEOMETRY;
+        if (result == ABBE_OK)
+          assert_true(moved.vertex_count == p.vertex_count && moved.edge_count == p.edge_count &&
+                      moved.face_count == p.face_count);
+        else
+          assert_memory_equal(other.facet[0].n, cut.facet[0].n, sizeof cut.facet[0].n);
+      }
+  }
+  assert_true(moved_count > 10 && refused > 10);
+}
+
 /* Half a degree along each freedom: the stone has the same facets, corners and edges, its girdle
  * stays, and to the first order it moves as the freedom says. What goes too far is refused. */
 TEST(meets_are_kept) {

@@ -82,6 +82,18 @@ static void refuse(const abbe_cut *cut, double weld, abbe_result code, const cha
   assert_null(p.fate);
 }
 
+/* A plate whose corners above and below become one is no stone. */
+TEST(what_a_weld_flattens_is_refused) {
+  static const char *const sides[] = {"96 24 48 72", "96 16 32 48 64 80"};
+  for (int i = 0; i < 2; i++) {
+    OWNED(abbe_cut, cut) =
+        design_parse(printed("g 96 0\na 90 1 %s\na 0 0.004\na -0 0.004\n", sides[i]));
+    refuse(&cut, 0.01, ABBE_GEOMETRY, "take another 'weld'");
+    OWNED(abbe_cut_polyhedron, p) = stone(&cut, 1e-4);
+    assert_int_equal(p.face_count, i == 0 ? 6 : 8);
+  }
+}
+
 /* A cutter is told where to look. */
 TEST(the_open_side_is_named) {
   static const struct {

@@ -72,6 +72,40 @@ static const cJSON *under(const cJSON *object, const char *key) {
   return cJSON_IsArray(item) ? cJSON_GetArrayItem(item, 0) : item;
 }
 
+/* Words of OBJ are letters and digits; a stone of colour says it; one without an index at the lines
+ * is refused. */
+TEST(names_and_colours_are_written) {
+  static const char stones[] =
+      "materials:\n"
+      "- {name: blue, model: constant, coefficients: [1.5], source: s,\n"
+      "   absorption: {attenuation_per_m: [[380, 300], [500, 0], [780, 300]]}}\n"
+      "- {name: narrow, model: cauchy, coefficients: [1.5, 0.006], range_nm: [400, 450], source: "
+      "s}\n";
+  OWNED(abbe_cut, cut) = design_parse("g 96 0\na 90 1 96 n Az-9{ 24 48 72\na 0 1\na -0 1\n");
+  OWNED(abbe_cut_polyhedron, p) = stone_of(&cut);
+  MADE(abbe_material_table, table,
+       abbe_material_table_parse(stones, strlen(stones), "stones", &table, &error));
+  FREED char *obj = NULL, *glb = NULL;
+  size_t size;
+  write_to(paths[1], &cut, &p, 1, NULL);
+  OK(abbe_file_read(paths[1], 1 << 20, &obj, &size, &error));
+  assert_contains(obj, "g facet_Az_9__1\n");
+  write_to(paths[2], &cut, &p, 0.003, &table.material[0]);
+  OK(abbe_file_read(paths[2], 1 << 20, &glb, &size, &error));
+  cJSON *root = cJSON_Parse(glb + 20);
+  const cJSON *e = under(under(root, "materials"), "extensions");
+  const cJSON *colour =
+      cJSON_GetObjectItemCaseSensitive(under(e, "KHR_materials_volume"), "attenuationColor");
+  const double red = cJSON_GetArrayItem(colour, 0)->valuedouble,
+               green = cJSON_GetArrayItem(colour, 1)->valuedouble;
+  assert_true(green > red && red >= 0 && green <= 1);
+  cJSON_Delete(root);
+  REFUSED(
+      ABBE_OUT_OF_RANGE, "no index at the lines d, F and C",
+      abbe_cut_solid_write(&cut, &p, 1, &table.material[1], ABBE_CUT_SOLID_GLB, stderr, &error));
+  assert_int_equal(unlink(paths[1]) + unlink(paths[2]), 0);
+}
+
 /* Diamond: n_d 2.4175, V_d 55.3 by the record; clear, so no colour. */
 TEST(gltf_knows_the_stone) {
   OWNED(abbe_cut, cut) = design_parse(design_b);

@@ -115,6 +115,22 @@ TEST(angles_that_are_none) {
           abbe_cut_stretch_to(&cut, &p, 40, 0, &error));
 }
 
+/* A cube on its corner has no girdle: what one side is told holds for the other too. */
+TEST(bound_sides_go_together) {
+  for (int i = 0; i < 2; i++) {
+    OWNED(abbe_cut, cut) =
+        design_parse("g 96 0\na 54.735610 0.5 96 32 64\na -54.735610 0.5 16 48 80\n");
+    OWNED(abbe_cut_polyhedron, p) = stone_of(&cut);
+    OK(abbe_cut_add_tier(&cut, 30, 1, &error)); /* without facets: of no account */
+    OK(abbe_cut_stretch_to(&cut, &p, i == 0 ? 50 : 0, i == 0 ? 0 : 50, &error));
+    OWNED(abbe_cut_polyhedron, q) = stone_of(&cut);
+    angles_of(&cut, &q, 50, 50);
+    assert_false(abbe_cut_stretch_is_flat(&cut.tier[1], 1));
+    REFUSED(ABBE_OUT_OF_RANGE, "times what they were, and not",
+            abbe_cut_stretch_apply(&cut, &q, 1e6, 1e6, &error));
+  }
+}
+
 /* Quartz: the critical angle is 40.37 degrees; and a ray that comes straight down onto 43 degrees
  * meets the facet opposite at 180 - 129 = 51. */
 TEST(the_window) {

@@ -161,6 +161,11 @@ TEST(what_cannot_be_used_is_said) {
   for (int i = 0; i < 65; i++) strcat(deep, "<materialx>");
   REFUSED(ABBE_PARSE, "more than 64 deep", import(deep, &error));
   REFUSED(ABBE_SCHEMA, "holds none of", import(DOCUMENT("<nodedef/>"), &error));
+  static const char typed[] = "<!DOCTYPE materialx [<!ENTITY a \"1\">]><materialx/>";
+  static const abbe_import_options options = {.format = ABBE_IMPORT_MTLX};
+  clean();
+  REFUSED(ABBE_PARSE, "a.mtlx:1: a MaterialX document has no <!DOCTYPE",
+          abbe_import_parse(typed, strlen(typed), "a.mtlx", &options, &table, &report, &error));
   REFUSED(ABBE_PARSE, "a.mtlx:3: mismatched tag", import(DOCUMENT("<gltf_pbr></a>"), &error));
   REFUSED(ABBE_PARSE, "a.mtlx:3: 'ior' is 'high'; one number is right",
           import(DOCUMENT("<gltf_pbr>" INPUT("ior", "high") "</gltf_pbr>"), &error));
