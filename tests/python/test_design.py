@@ -210,6 +210,18 @@ class Commands(unittest.TestCase):
                                                        "objects.pane.fit": 0.1})
                              .plan()["mesh_faces"], abbe.Scene("p.yaml").plan()["mesh_faces"])
 
+    def test_black_margins_stay_black(self):
+        y, x = np.mgrid[0:48, 0:60] + 0.5
+        ring = (np.abs(np.hypot(x - 28, y - 26) - 11) < 4) * 1.0
+        abbe.Picture(np.repeat(ring[:, :, None], 3, 2), space="rec709").save("ring.png", view="Plain")
+        code, out, wrong = run("pane", "ring.png", "-o", "p.obj", "--png", "thrown.png", "--json")
+        self.assertEqual((code, wrong), (0, ""))
+        self.assertGreater(float(out.split('"ssim": ')[1].split(",")[0]), 0.5)
+        seen = pane.decoded(abbe.load("thrown.png").rgb) @ command.LUMINANCE
+        for margin in (seen[:8], seen[44:], seen[:, :10], seen[:, 47:]):
+            self.assertLess(margin.mean(), 0.002)
+        self.assertGreater(np.median(seen[ring == 1]), 0.8)
+
     def test_names_that_mean_something_in_yaml(self):
         os.rename("hill.png", "a: b #.png")
         with open("my own.yaml", "w", encoding="utf-8") as file:
@@ -252,7 +264,7 @@ class Commands(unittest.TestCase):
                 ("pane hill.png -o p.obj --thickness 0.1mm", 1, "make --thickness larger"),
                 ("pane hill.png -o p.obj --material gold", 1, "clear material"),
                 ("pane hill.png -o p.obj --material glas", 1, "glas"),
-                ("pane hill.png -o no/p.obj", 1, "no/p.obj: No such file"),
+                ("pane hill.png -o no/p.obj", 1, "no/p.obj: could not be written"),
                 ("pane hill.png", 2, "where to?"), ("pane -o p.obj", 2, "which picture?"),
                 ("pane hill.png -o p.ply", 2, ".obj or .stl"),
                 ("pane hill.png -o p.stl --scene p.yaml", 2, "needs the pane as an .obj"),

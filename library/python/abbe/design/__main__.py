@@ -30,6 +30,7 @@ GLASSES = ("fused-silica", "n-bk7", "k5", "n-bak4", "n-baf10", "f2", "sf10", "sf
 VEIL = 0.02  # of the even light, the least that falls everywhere: light cannot be torn apart
 SIDES = 16, 1024
 LUMINANCE = (0.2126, 0.7152, 0.0722)  # of linear Rec.709
+BLACK = 0.002  # of white; margins that are darker get no light at all
 SAMPLES = 7  # wavelengths of the picture that is predicted
 
 
@@ -142,8 +143,20 @@ def _grey(luminance):
     return abbe.Picture(np.repeat(luminance[:, :, None], 3, 2), space="rec709")
 
 
-def _wanted(q, picture):
-    """The target in units of the even light: white times the picture, and the rest as a veil."""
+def _lit(q, picture):
+    """The rectangle (top, bottom, left, right) that light is sent to: without black margins, unless
+    they get what a darker white leaves."""
+    box = []
+    for axis in (1, 0):
+        lit, count = np.flatnonzero((picture > BLACK).any(axis)), picture.shape[1 - axis]
+        ends = max(lit[0] - 1, 0), min(lit[-1] + 2, count)
+        box += ends if q.white is None and SIDES[0] <= ends[1] - ends[0] < 0.9 * count else (0, count)
+    return box
+
+
+def _wanted(q, picture, box):
+    """The target in units of the even light, in the rectangle: white times the picture, and the rest
+    as a veil."""
     most = (1 - VEIL) / picture.mean()
     white = most if q.white is None else q.white
     if not 0 < white <= most * (1 + 1e-9):
@@ -152,7 +165,8 @@ def _wanted(q, picture):
             f"{q.target}: with a white of {white:g} times the even light it throws "
             f"{white * picture.mean() + VEIL:.3g} times the light that there is; --white may be "
             f"{math.floor(100 * most) / 100:g} at the most")
-    return white * picture + 1 - white * picture.mean()
+    lit = picture[box[0]:box[1], box[2]:box[3]]
+    return white * lit + (1 - white * picture.mean()) * picture.size / lit.size
 
 
 def _limits(q, face):
@@ -221,7 +235,8 @@ def _pane(argv):
         parser.error(f"--light {q.light[2]:g} m is not above the pane, whose back is at "
                      f"{q.thickness:g} m")
     picture = _read(q.target)
-    wanted = _wanted(q, picture)
+    box = _lit(q, picture)
+    wanted = _wanted(q, picture, box)
     material = abbe.Materials(q.materials)[q.material]
     nm, weights = abbe.weights(SAMPLES)
     n = float(np.average(material.n(nm), weights=weights[:, 1]))
@@ -234,15 +249,18 @@ def _pane(argv):
                            f"{round(cells * rows / columns)} of them down; 16 to 2048 are right")
     setup = pane.Setup(picture.shape, q.size, q.distance, q.thickness, q.light, q.picture, cells)
     on = not q.quiet and sys.stderr.isatty()
-    face = pane.design(wanted, setup, n, progress=lambda done: on and print(
+    face = pane.design(wanted, setup.part(*box), n, progress=lambda done: on and print(
         f"\rpane {100 * done:3.0f} %", end="", file=sys.stderr, flush=True))
     if on:
         print("\r\033[K", end="", file=sys.stderr)
+    face = pane.Face(setup, face.h, n)
     depth, radius = _limits(q, face)
     rgb, blur = _predict(setup, face, material)
     same = abbe.compare(_grey(picture), _grey(rgb @ LUMINANCE), best_scale=True, structure=True)
     found = {"ssim": same["ssim"],
-             "white": wanted.max(), "depth_mm": 1e3 * depth, "dip_radius_mm": 1e3 * radius,
+             "white": wanted.max(), "floor": np.percentile((rgb @ LUMINANCE)[box[0]:box[1], box[2]:box[3]], 5)
+             / wanted.max(),
+             "depth_mm": 1e3 * depth, "dip_radius_mm": 1e3 * radius,
              "picture_mm": 1e3 * setup.picture, "pixel_mm": 1e3 * setup.pixel,
              "colour_blur_pixels": blur, "colour_blur_mm": 1e3 * setup.pixel * blur,
              "sun_blur_mm": 0 if q.light else 1e3 * q.distance * math.radians(pane.SUN_DEGREES)}
@@ -262,6 +280,7 @@ def _pane(argv):
         return
     print(f"picture     {found['picture_mm']:.4g} mm across, white {found['white']:.3g} times the "
           f"even light; predicted SSIM {found['ssim']:.3f}\n"
+          f"floor       the darkest twentieth gets {100 * found['floor']:.2g} % of white's light\n"
           f"cut         {found['depth_mm']:.3g} mm deep, the smallest dip's radius "
           f"{found['dip_radius_mm']:.3g} mm\n"
           f"colours     {blur:.2f} pixels apart ({found['colour_blur_mm']:.2g} mm)")

@@ -11,6 +11,7 @@ unknown is h itself, so the normals always are those of a surface.
 Lengths are in metres; inside, y grows with the picture's rows, downwards. Reflected and absorbed
 light, and the sun's disk, are not followed; Fresnel's losses are.
 """
+import copy
 import dataclasses
 
 import numpy as np
@@ -84,6 +85,14 @@ class Setup:
             self.middle = (self.lamp[0] * (1 - grow), -self.lamp[1] * (1 - grow))
         self.picture = self.picture or natural
         self.pixel = self.picture / columns
+
+    def part(self, top, bottom, left, right):
+        """The same pane for a part of the picture alone, pixels of it."""
+        out, (rows, columns) = copy.copy(self), self.shape
+        out.shape = bottom - top, right - left
+        out.middle = (self.middle[0] + ((left + right) - columns) / 2 * self.pixel,
+                      self.middle[1] + ((top + bottom) - rows) / 2 * self.pixel)
+        return out
 
     def entry(self, h, n):
         """Inside: the direction (x, y, and down) of the ray to each place of the face, and the flux
@@ -268,11 +277,11 @@ def newton(face, wanted, steps):
 
 
 def start(setup, n):
-    """The smooth face that lays the pane's square onto the picture's."""
+    """The smooth face that lays the pane's rectangle onto the picture's."""
     face = Face(setup, np.zeros_like(setup.x), n)
     rows, columns = setup.shape
     u = (setup.x / setup.width + 0.5) * columns
-    v = setup.y / setup.width * columns + rows / 2
+    v = (setup.y / np.ptp(setup.y) + 0.5) * rows
     for _ in range(8):
         uu, uv, vu, vv = face.derivative()
         if face.turned_back:
