@@ -3,6 +3,7 @@
 #include "tests/check.h"
 
 #include "base/maths.h"
+#include "spectral/biaxial.h"
 #include "spectral/optics.h"
 
 #include <complex.h>
@@ -236,4 +237,74 @@ TEST(a_table_of_a_film_is_the_film) {
   }
   assert_near(at(&table, false, 1, glass, 45, 550).reflected[ABBE_FILM_S], 0.040047718, 5e-10);
   assert_near(at(&table, false, 1, glass, 45, 550).reflected[ABBE_FILM_P], 0.001355739, 5e-10);
+}
+
+/* Against 4x4 matrices of the layers' fields and their eigenvectors, solved apart from Abbe: bare
+ * and under three layers, one of which absorbs, from an index and from inside of crystals that lie
+ * any way. The greater share first. [Berreman1972] */
+#define STRAIGHT FIELDS({1, 0, 0}, {0, 1, 0}, {0, 0, 1})
+TEST(faces_answer_as_matrices_of_fields_do) {
+  static const abbe_biaxial stone = {{1.55, 1.62, 1.75},
+                                     {{0.36, 0.48, -0.8}, {-0.8, 0.6, 0}, {0.48, 0.64, 0.6}}},
+                            other = {{1.9, 1.907, 2.034},
+                                     {{0, 0.6, 0.8}, {1, 0, 0}, {0, 0.8, -0.6}}};
+  static const abbe_film_layer three[] = {{1.38, 0, 90, NULL},
+                                          {2.35, 0, 110, NULL},
+                                          {1.9, 0.4, 30, NULL}},
+                               gap[] = {{1.2, 0, 150, NULL}};
+  static const struct {
+    double n, degrees;
+    const abbe_film_layer *layer;
+    size_t count;
+    double s[3], p[3]; /* reflected as s, as p, transmitted */
+  } outside[] = {
+      {1, 35, NULL, 0, {.094822436, .000252246, .904925318}, {.000002965, .031825263, .968171772}},
+      {1, 80, NULL, 0, {.589641761, .000299096, .410059143}, {.000061124, .223045425, .776893450}},
+      {1, 35, three, 3, {.014754157, .000157588, .738888392}, {.000001852, .014291491, .740770077}},
+      {1, 80, three, 3, {.435438622, .000188905, .406268042}, {.000038605, .322860839, .494988489}},
+      {1.8, 60, gap, 1, {.914529573, .000400055, .085070371}, {.000543233, .972603833, .026852934}},
+      {1.8, 75, three, 3, {.910764168, .000820612, 0}, {.000820612, .857956515, 0}},
+  };
+  const double n[3] = {0, 0, -1};
+  for (size_t i = 0; i < sizeof outside / sizeof *outside; i++) {
+    const double a = outside[i].degrees * ABBE_DEGREE, k = outside[i].n,
+                 ray[3] = {sin(a), 0, cos(a)};
+    const abbe_biaxial from = {{k, k, k}, STRAIGHT};
+    const abbe_biaxial_film film = {outside[i].layer, outside[i].count, false, 550};
+    abbe_biaxial_split both[2];
+    abbe_biaxial_meet_both(&from, &stone, n, ray, &film, both);
+    for (int p = 0; p < 2; p++) {
+      const double *wanted = p == 0 ? outside[i].s : outside[i].p;
+      for (int j = 0; j < 2; j++) assert_near(both[p].reflected[j].share, wanted[j], 1e-9);
+      assert_near(both[p].transmitted[0].share + both[p].transmitted[1].share, wanted[2], 1e-9);
+    }
+  }
+  static const struct {
+    double ray[3];
+    int mode;
+    bool filmed, on; /* into the other crystal, or into air */
+    double back[2], through[2];
+  } inside[] = {
+      {{.3, .2, .9}, 0, 0, 0, {.031942544, .015157529}, {.861112039, .091787889}},
+      {{.3, .2, .9}, 0, 1, 0, {.011427608, .006759961}, {.673852129, .072909332}},
+      {{.3, .2, .9}, 0, 1, 1, {.086509699, .031060201}, {.541174153, .140440223}},
+      {{.3, .2, .9}, 1, 1, 0, {.031476473, .004206817}, {.733488406, .002373350}},
+      {{.5, -.2, .75}, 1, 0, 0, {.901374668, .098625332}, {0, 0}},
+      {{.5, -.2, .75}, 1, 1, 0, {.324713422, .019159211}, {0, 0}},
+      {{.5, -.2, .75}, 1, 1, 1, {.114019289, .110513771}, {.367709652, .212648643}},
+  };
+  for (size_t i = 0; i < sizeof inside / sizeof *inside; i++) {
+    const abbe_biaxial_film film = {three, inside[i].filmed ? 3 : 0, !inside[i].on, 550};
+    double ray[3] = {inside[i].ray[0], inside[i].ray[1], inside[i].ray[2]};
+    abbe_vector_normalise(ray);
+    abbe_biaxial_split m;
+    abbe_biaxial_meet(&stone, inside[i].on ? &other : &(abbe_biaxial){{1, 1, 1}, STRAIGHT}, n,
+                      (abbe_biaxial_mode)inside[i].mode, ray, &film, &m);
+    for (int side = 0; side < 2; side++) {
+      const abbe_biaxial_wave *w = side == 0 ? m.reflected : m.transmitted;
+      const double *wanted = side == 0 ? inside[i].back : inside[i].through;
+      assert_near(fmax(w[0].share, w[1].share), wanted[0], 1e-9);
+      assert_near(fmin(w[0].share, w[1].share), wanted[1], 1e-9);
+    }
+  }
 }
