@@ -102,11 +102,11 @@ static void make_face(const double n[3], const double k[3], face *f) {
     f->across[i] = n[(i + 1) % 3] * f->along[(i + 2) % 3] - n[(i + 2) % 3] * f->along[(i + 1) % 3];
 }
 
-/* The wave vector along + q n, and whether it travels: q solves A q^2 + 2 B q + C = 0 of the
- * surface of wave vectors, and the ray leaves the face to the side of n (+1 or -1); a wave that
- * does not travel dies out on that side. */
-static void find_wave_vector(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const face *f,
-                             double side, wave *w) {
+/* The wave vector along + q n: whether it travels, and q, or else its imaginary part in *decay. q
+ * solves A q^2 + 2 B q + C = 0 of the surface of wave vectors, and the ray leaves the face to the
+ * side of n (+1 or -1); a wave that does not travel dies out on that side. */
+static bool find_wave_vector(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const face *f,
+                             double side, double *q, double *decay) {
   const double o = m->n_o * m->n_o, e = m->n_e * m->n_e;
   double a = 1 / o, b = 0, c = f->k * f->k / o - 1;
   if (bends(m, mode)) {
@@ -116,10 +116,10 @@ static void find_wave_vector(const abbe_uniaxial *m, abbe_uniaxial_mode mode, co
     b = more * at_n * at_k;
     c = f->k * f->k / e + more * at_k * at_k - 1;
   }
-  const double square = b * b - a * c, root = sqrt(fabs(square));
-  w->travels = square > 0;
-  const number q = (side * (w->travels ? root : I * root) - b) / a;
-  for (int i = 0; i < 3; i++) w->k[i] = f->k * f->along[i] + q * f->n[i];
+  const double square = b * b - a * c, root = side * sqrt(fabs(square));
+  *q = ((square > 0 ? root : 0) - b) / a;
+  *decay = root / a;
+  return square > 0;
 }
 
 static double norm(const number v[3]) {
@@ -128,41 +128,69 @@ static double norm(const number v[3]) {
   return sqrt(square);
 }
 
-/* Scales the field to 1 and makes the rest of it. */
-static void finish_wave(const face *f, wave *w) {
-  const double length = norm(w->e);
-  for (int i = 0; i < 3; i++) w->e[i] /= length;
-  cross(w->k, w->e, w->h);
-  w->flux = 0;
-  for (int i = 0; i < 3 && w->travels; i++) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    w->flux += f->n[i] * creal(w->e[j] * conj(w->h[k]) - w->e[k] * conj(w->h[j]));
+/* A direction across the wave vector, by which both fields are separated: across the axis too or,
+ * where that lies along the wave vector or there is none, across the plane of incidence. */
+static void across_wave_vector(const abbe_uniaxial *m, const face *f, const number k[3],
+                               number out[3]) {
+  const number axis[3] = {m->axis[0], m->axis[1], m->axis[2]};
+  for (int i = 0; i < 3; i++) out[i] = f->across[i];
+  if (m->n_o == m->n_e) return;
+  number turned[3];
+  cross(axis, k, turned);
+  const double length = norm(turned);
+  if (length < 1e-9 * m->n_o) return;
+  for (int i = 0; i < 3; i++) out[i] = turned[i] / length;
+}
+
+/* The same of a wave that travels. */
+static void across_real_vector(const abbe_uniaxial *m, const face *f, const double k[3],
+                               double out[3]) {
+  memcpy(out, f->across, sizeof f->across);
+  if (m->n_o == m->n_e) return;
+  double turned[3];
+  abbe_vector_cross(m->axis, k, turned);
+  const double length = abbe_vector_length(turned);
+  if (length < 1e-9 * m->n_o) return;
+  /* rounding leaves a part along k where the two are nearly parallel */
+  const double along = abbe_vector_dot(turned, k) / abbe_vector_dot(k, k);
+  for (int i = 0; i < 3; i++) out[i] = (turned[i] - along * k[i]) / length;
+}
+
+/* Ordinary: E along axis x k. Extraordinary: H along it, and E = -(k x H) / permittivity. Waves
+ * that travel are real, and most do. */
+static void make_real_wave(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const face *f, double q,
+                           wave *w) {
+  double k[3], t[3], e[3], h[3], ray[3];
+  for (int i = 0; i < 3; i++) k[i] = f->k * f->along[i] + q * f->n[i];
+  across_real_vector(m, f, k, t);
+  if (mode == ABBE_UNIAXIAL_ORDINARY) {
+    memcpy(e, t, sizeof t);
+  } else {
+    abbe_vector_cross(t, k, e);
+    if (bends(m, mode)) stretch(m, e, m->n_o * m->n_o, m->n_e * m->n_e, e);
+  }
+  abbe_vector_normalise(e);
+  abbe_vector_cross(k, e, h);
+  abbe_vector_cross(e, h, ray);
+  w->flux = abbe_vector_dot(f->n, ray);
+  for (int i = 0; i < 3; i++) {
+    w->k[i] = k[i];
+    w->e[i] = e[i];
+    w->h[i] = h[i];
   }
 }
 
-/* A direction across the wave vector, by which both fields are separated: across the axis too or,
- * where that lies along the wave vector or there is none, across the plane of incidence. */
-static void across_wave_vector(const abbe_uniaxial *m, const face *f, const wave *w,
-                               number out[3]) {
-  const number across[3] = {f->across[0], f->across[1], f->across[2]};
-  const number axis[3] = {m->axis[0], m->axis[1], m->axis[2]};
-  memcpy(out, across, sizeof across);
-  if (m->n_o == m->n_e) return;
-  number turned[3], along = 0;
-  cross(axis, w->k, turned);
-  const double length = norm(turned), square = pow(norm(w->k), 2);
-  if (length < 1e-9 * m->n_o) return;
-  /* rounding leaves a part along a real k where the two are nearly parallel */
-  for (int i = 0; i < 3 && w->travels; i++) along += turned[i] * w->k[i];
-  for (int i = 0; i < 3; i++) out[i] = (turned[i] - along / square * w->k[i]) / length;
-}
-
-/* Ordinary: E along axis x k. Extraordinary: H along it, and E = -(k x H) / permittivity. */
 static void make_wave(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const face *f, double side,
                       wave *w) {
-  find_wave_vector(m, mode, f, side, w);
+  double q, decay;
+  w->travels = find_wave_vector(m, mode, f, side, &q, &decay);
+  if (w->travels) {
+    make_real_wave(m, mode, f, q, w);
+    return;
+  }
   number t[3];
-  across_wave_vector(m, f, w, t);
+  for (int i = 0; i < 3; i++) w->k[i] = f->k * f->along[i] + (q + I * decay) * f->n[i];
+  across_wave_vector(m, f, w->k, t);
   if (mode == ABBE_UNIAXIAL_ORDINARY) {
     memcpy(w->e, t, sizeof t);
   } else {
@@ -173,7 +201,10 @@ static void make_wave(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const fac
     for (int i = 0; i < 3; i++)
       w->e[i] = w->e[i] / o + (bends(m, mode) ? (1 / e - 1 / o) * along * m->axis[i] : 0);
   }
-  finish_wave(f, w);
+  const double length = norm(w->e);
+  for (int i = 0; i < 3; i++) w->e[i] /= length;
+  cross(w->k, w->e, w->h);
+  w->flux = 0;
 }
 
 /* ---- the face ---- */
