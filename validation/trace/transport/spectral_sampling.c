@@ -1,6 +1,7 @@
 #include "validation/trace/transport/spectral_sampling.h"
 
 #include "colorimetry/observer.h"
+#include "colorimetry/observer_integral.h"
 #include "colorimetry/weights.h"
 
 #include <math.h>
@@ -189,8 +190,7 @@ static abbe_result fill_colours(const abbe_scene *scene, abbe_spectral_sampling 
     memcpy(s->white[l], weights.sum, sizeof s->white[l]);
     for (size_t k = 0; k < s->steps; k++) {
       const double watts =
-          abbe_weights_band_power(illuminant, s->lambda_nm[0], s->lambda_nm[s->steps],
-                                  s->lambda_nm[k], s->lambda_nm[k + 1]);
+          abbe_observer_integral_power(illuminant, s->lambda_nm[k], s->lambda_nm[k + 1]);
       power += watts;
       s->power[l * s->steps + k] = (float)watts;
       for (int c = 0; c < 3; c++)
