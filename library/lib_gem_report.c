@@ -8,6 +8,7 @@
 #include "scenes/cuts/cut_polyhedron.h"
 #include "scenes/cuts/cut_stretch.h"
 #include "spectral/formats/material_import.h"
+#include "validation/measure/gem/gem_derive.h"
 #include "validation/measure/gem/gem_judgement.h"
 #include "validation/measure/gem/gem_maps.h"
 
@@ -17,13 +18,13 @@
 struct abbe_lib_gem_report {
   abbe_gem_judgement judgement;
   size_t count;
-  abbe_gem_judgement_row row[ABBE_GEM_JUDGEMENT_MOST_ROWS];
+  abbe_gem_judgement_row row[ABBE_GEM_JUDGEMENT_MOST_ROWS + 6]; /* slopes are the last */
 };
 
 typedef struct request {
   const char *table, *axis;
   double width_m, min_nm, max_nm, head_rad, tilt_rad, step_rad, weld, crown_rad, pavilion_rad;
-  size_t wavelengths, size, repeats, threads;
+  size_t wavelengths, size, repeats, threads, slopes;
 } request;
 
 static abbe_result read_request(const char *const *settings, size_t count, request *q,
@@ -52,6 +53,7 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
       ABBE_LIB_COUNT("wavelengths", &q->wavelengths, 1, 256),
       ABBE_LIB_COUNT("size", &q->size, 8, ABBE_GEM_MOST_SIDE),
       ABBE_LIB_COUNT("repeats", &q->repeats, 3, ABBE_GEM_MOST_REPEATS),
+      ABBE_LIB_COUNT("slopes", &q->slopes, 0, 1),
       ABBE_LIB_COUNT("threads", &q->threads, 1, 1024)};
   return abbe_library_settings_read("gem_report", known, sizeof known / sizeof *known, settings,
                                     count, error);
@@ -106,6 +108,73 @@ static abbe_result prepare(const request *q, const char *path, const char *mater
   return ABBE_OK;
 }
 
+static void free_key(abbe_gem_derive_key *key) {
+  for (int s = 0; s < 2; s++) abbe_gem_derive_stone_free(&key->moved[s]);
+}
+
+/* A main angle a little less and more, the other side's as it is. False where it has none or cannot
+ * move by itself. */
+static bool move_side(const request *q, const work *w, int side, abbe_gem_derive_key *key) {
+  const double degrees = abbe_cut_stretch_main_deg(&w->cut, &w->polyhedron,
+                                                   side == 0 ? ABBE_CUT_CROWN : ABBE_CUT_PAVILION);
+  key->name = side == 0 ? "crown" : "pavilion";
+  key->step = 1e-4;
+  for (int s = 0; s < 2; s++) {
+    abbe_cut cut = {0};
+    ABBE_OWNED(abbe_cut_polyhedron, p) = {0};
+    const double to = degrees + (s == 0 ? -key->step : key->step);
+    const bool moved = degrees > 0 && abbe_cut_copy(&w->cut, &cut, NULL) == ABBE_OK &&
+                       abbe_cut_stretch_to(&cut, &w->polyhedron, side == 0 ? to : 0,
+                                           side == 1 ? to : 0, NULL) == ABBE_OK &&
+                       abbe_cut_polyhedron_make(&cut, q->weld, &p, NULL) == ABBE_OK &&
+                       abbe_gem_derive_cut_make(&cut, &p, w->material, NULL, q->width_m,
+                                                &w->wavelengths, &key->moved[s], NULL) == ABBE_OK;
+    abbe_cut_copy_free(&cut);
+    if (!moved) return false;
+  }
+  return true;
+}
+
+static abbe_result add_slopes(const request *q, const work *w, abbe_lib_gem_report *r,
+                              abbe_error *error) {
+  static const abbe_gem_derive_measure measures[] = {ABBE_GEM_DERIVE_RETURN, ABBE_GEM_DERIVE_ISO,
+                                                     ABBE_GEM_DERIVE_FIRE};
+  static const char *const rows[2][3][2] = {
+      {{"return_by_crown", "light return by a degree of the crown's main angle"},
+       {"iso_by_crown", "brightness by a degree of it"},
+       {"fire_by_crown", "degrees of fire by a degree of it"}},
+      {{"return_by_pavilion", "light return by a degree of the pavilion's main angle"},
+       {"iso_by_pavilion", "brightness by a degree of it"},
+       {"fire_by_pavilion", "degrees of fire by a degree of it"}}};
+  abbe_gem_derive_stone base = {0};
+  abbe_gem_derive_key key[2] = {{0}};
+  size_t side[2], keys = 0;
+  for (size_t i = 0; i < 2; i++)
+    if (move_side(q, w, (int)i, &key[keys]))
+      side[keys++] = i;
+    else
+      free_key(&key[keys]);
+  abbe_result result = abbe_gem_derive_cut_make(&w->cut, &w->polyhedron, w->material, NULL,
+                                                q->width_m, &w->wavelengths, &base, error);
+  const abbe_gem_derive_desc desc = {.base = &base,
+                                     .weights = &w->weights,
+                                     .keys = keys,
+                                     .key = key,
+                                     .head_rad = q->head_rad,
+                                     .lines = 256,
+                                     .threads = q->threads};
+  for (size_t m = 0; m < 3 && keys > 0 && result == ABBE_OK; m++) {
+    abbe_gem_number number[3];
+    result = abbe_gem_derive_make(&desc, measures[m], number, NULL, error);
+    for (size_t k = 0; k < keys && result == ABBE_OK; k++)
+      r->row[r->count++] = (abbe_gem_judgement_row){
+          .name = rows[side[k]][m][0], .text = rows[side[k]][m][1], .number = number[1 + k]};
+  }
+  abbe_gem_derive_stone_free(&base);
+  for (size_t k = 0; k < 2; k++) free_key(&key[k]);
+  return result;
+}
+
 static abbe_gem_judgement_desc describe(const request *q, bool (*progress)(void *, double),
                                         void *user) {
   size_t steps = (size_t)(q->tilt_rad / q->step_rad + 0.5);
@@ -137,12 +206,13 @@ abbe_result abbe_lib_gem_report_make(const char *path, const char *material,
   abbe_result result = prepare(&q, path, material, &w, error);
   if (result == ABBE_OK)
     result = abbe_gem_judgement_make(&w.stone, &w.weights, &desc, &r->judgement, error);
+  if (result == ABBE_OK) r->count = abbe_gem_judgement_rows(&r->judgement, r->row);
+  if (result == ABBE_OK && q.slopes > 0) result = add_slopes(&q, &w, r, error);
   free_work(&w);
   if (result != ABBE_OK) {
     abbe_lib_gem_report_free(r);
     return result;
   }
-  r->count = abbe_gem_judgement_rows(&r->judgement, r->row);
   *out = r;
   return ABBE_OK;
 }

@@ -22,9 +22,10 @@ typedef struct abbe_lib_gem_report abbe_lib_gem_report;
  * degrees), tilt_rad (to either side, 30 degrees; 0: not tilted, and no fire), step_rad (2
  * degrees), size (a side of the maps, 96), repeats (4), threads, weld, axis (of a crystal: X,Y,Z,
  * and of three indices its z and x; 0,0,1), crown_rad and pavilion_rad (angles of the main facets,
- * meets kept; 0: the design's own). progress may be NULL. ABBE_NOT_FOUND, ABBE_IO,
- * ABBE_PARSE, ABBE_GEOMETRY, ABBE_OUT_OF_RANGE, ABBE_UNSUPPORTED for a metal, ABBE_CANCELLED,
- * ABBE_NO_MEMORY. */
+ * meets kept; 0: the design's own), slopes (1: numbers return_by_crown, iso_by_crown, fire_by_crown
+ * and so by pavilion too, of a degree more of that side's main angle; fire there is in degrees).
+ * progress may be NULL. ABBE_NOT_FOUND, ABBE_IO, ABBE_PARSE, ABBE_GEOMETRY, ABBE_OUT_OF_RANGE,
+ * ABBE_UNSUPPORTED for a metal, ABBE_CANCELLED, ABBE_NO_MEMORY. */
 abbe_result abbe_lib_gem_report_make(const char *path, const char *material,
                                      const char *const *settings, size_t count,
                                      bool (*progress)(void *user, double done), void *user,

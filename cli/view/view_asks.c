@@ -184,6 +184,23 @@ static void draw_arrows(const abbe_view_state *s) {
   }
 }
 
+/* While a slider is pointed at: the stone from above, where a degree more returns more light,
+ * green, and less, red. */
+static void draw_hint(const abbe_view_session *app) {
+  enum { SIDE = ABBE_VIEW_FACE, PIXEL = 5 };
+  if (app->hinted == NULL) return;
+  const float *change = app->hinted->change[app->hinted_side];
+  const double left = app->area[0] - PIXEL * SIDE - 12, top = 30;
+  abbe_ui_box(left - 6, top - 22, left + PIXEL * SIDE + 6, top + PIXEL * SIDE + 6, 0x2016181c);
+  abbe_ui_label(left, top - 19, 0xe8eaee, "a degree more");
+  for (size_t i = 0; i < SIDE * SIDE; i++) {
+    const double x = left + PIXEL * (double)(i % SIDE), y = top + PIXEL * (double)(i / SIDE);
+    const unsigned level = (unsigned)fmin(255, 600 * fabs((double)change[i]));
+    if (level > 4)
+      abbe_ui_box(x, y, x + PIXEL, y + PIXEL, change[i] > 0 ? level << 8 | level / 3 : level << 16);
+  }
+}
+
 void abbe_view_marks_draw(const abbe_view_session *app) {
   const abbe_view_state *s = &app->state;
   abbe_view_handle handle;
@@ -200,6 +217,7 @@ void abbe_view_marks_draw(const abbe_view_session *app) {
                           : s->outline.object[handle.index].name);
   }
   draw_arrows(s);
+  draw_hint(app);
   if (s->picked) {
     draw_feed(app);
     const double x = (double)s->pixel[0] + 0.5, y = (double)s->pixel[1] + 0.5;

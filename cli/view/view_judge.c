@@ -17,7 +17,7 @@
 
 extern char **environ;
 
-enum { COARSE = 24, FINE = 96, MOST_LINES = 16 };
+enum { COARSE = ABBE_VIEW_FACE, FINE = 96, MOST_LINES = 16 };
 
 static const char *const numbers[ABBE_VIEW_JUDGED_NUMBERS] = {"return", "gemray_iso",
                                                               "area_window"};
@@ -74,28 +74,102 @@ static bool find_next(const abbe_view_session *session, abbe_view_judged *out, s
   return false;
 }
 
-/* A design that cannot be judged has no numbers. */
-static void *judge(void *user) {
-  abbe_view_judge *j = user;
-  abbe_view_judged *out = &j->made;
-  char text[ABBE_VIEW_JUDGED_LONGEST], size[32], *line[MOST_LINES], *rest = text;
-  size_t count = 0;
+typedef struct asked {
+  char text[ABBE_VIEW_JUDGED_LONGEST], *line[MOST_LINES];
+  size_t count;
+} asked;
+
+static void split(const abbe_view_judged *judged, asked *out) {
+  char *rest = out->text;
+  out->count = 0;
+  memcpy(out->text, judged->request, sizeof out->text);
+  while (out->count < MOST_LINES - 6 &&
+         (out->line[out->count] = strtok_r(rest, "\n", &rest)) != NULL)
+    out->count++;
+}
+
+/* NULL: it cannot be judged. few: of five wavelengths. */
+static abbe_lib_gem_report *report_of(const asked *a, size_t side, bool few, bool slopes) {
+  static const char once[] = "tilt_rad=0", one[] = "threads=1", five[] = "wavelengths=5",
+                    with[] = "slopes=1";
+  const char *line[MOST_LINES];
+  char size[32];
+  size_t count = a->count;
   abbe_lib_gem_report *report = NULL;
-  memcpy(text, out->request, sizeof text);
-  while (count < MOST_LINES - 4 && (line[count] = strtok_r(rest, "\n", &rest)) != NULL) count++;
-  snprintf(size, sizeof size, "size=%zu", out->side);
-  char few[] = "wavelengths=5", once[] = "tilt_rad=0", one[] = "threads=1";
+  memcpy(line, a->line, count * sizeof *line);
+  snprintf(size, sizeof size, "size=%zu", side);
   line[count++] = size;
   line[count++] = once;
   line[count++] = one;
-  if (out->side == COARSE) line[count++] = few;
-  for (int i = 0; i < ABBE_VIEW_JUDGED_NUMBERS; i++) out->value[i] = NAN;
-  if (abbe_lib_gem_report_make(line[0], line[1], (const char *const *)line + 2, count - 2, NULL,
-                               NULL, &report, NULL) == ABBE_OK)
-    for (size_t i = 0; abbe_lib_gem_report_name(report, i) != NULL; i++)
-      for (int k = 0; k < ABBE_VIEW_JUDGED_NUMBERS; k++)
-        if (strcmp(abbe_lib_gem_report_name(report, i), numbers[k]) == 0)
-          abbe_lib_gem_report_number(report, i, &out->value[k], &out->error[k], NULL);
+  if (few) line[count++] = five;
+  if (slopes) line[count++] = with;
+  if (count < 3 || abbe_lib_gem_report_make(line[0], line[1], line + 2, count - 2, NULL, NULL,
+                                            &report, NULL) != ABBE_OK)
+    return NULL;
+  return report;
+}
+
+/* A number of a report; NaN where it has none. */
+static double number_of(const abbe_lib_gem_report *report, const char *name, double *error) {
+  double value = NAN;
+  for (size_t i = 0; abbe_lib_gem_report_name(report, i) != NULL; i++)
+    if (strcmp(abbe_lib_gem_report_name(report, i), name) == 0)
+      abbe_lib_gem_report_number(report, i, &value, error, NULL);
+  return value;
+}
+
+/* Adds what returns from place to place, `by` times. */
+static void add_map(const asked *a, float by, float *to) {
+  abbe_lib_gem_report *report = report_of(a, COARSE, true, false);
+  abbe_lib_picture *map = NULL;
+  if (report != NULL && abbe_lib_gem_report_maps(report, &map, NULL) == ABBE_OK) {
+    const size_t channels = abbe_lib_picture_channels(map);
+    for (size_t c = 0; c < channels; c++)
+      for (size_t i = 0; i < COARSE * COARSE; i++)
+        if (strcmp(abbe_lib_picture_channel(map, c), "return") == 0)
+          to[i] += by * abbe_lib_picture_pixels(map)[i * channels + c];
+  }
+  abbe_lib_picture_free(map);
+  abbe_lib_gem_report_free(report);
+}
+
+/* The same design with a degree more on one side. */
+static void change_side(const asked *a, int side, float *out) {
+  asked more = *a;
+  char line[64];
+  const char *key = side == 0 ? "crown_rad=" : "pavilion_rad=", *end;
+  for (size_t i = 0; i < a->count; i++) {
+    double value;
+    more.line[i] = more.text + (a->line[i] - a->text);
+    if (strncmp(more.line[i], key, strlen(key)) != 0 ||
+        !abbe_number_read(more.line[i] + strlen(key), &end, &value) || !(value > 0))
+      continue;
+    abbe_number_format(line, sizeof line, "%s%.9g", key, value + ABBE_DEGREE);
+    more.line[i] = line;
+    add_map(&more, 1, out);
+    add_map(a, -1, out);
+  }
+}
+
+/* A design that cannot be judged has no numbers. */
+static void *judge(void *user) {
+  static const char *const slopes[2][ABBE_VIEW_SLOPES] = {
+      {"return_by_crown", "iso_by_crown", "fire_by_crown"},
+      {"return_by_pavilion", "iso_by_pavilion", "fire_by_pavilion"}};
+  abbe_view_judge *j = user;
+  abbe_view_judged *out = &j->made;
+  const bool fine = out->side == FINE;
+  asked a;
+  split(out, &a);
+  abbe_lib_gem_report *report = report_of(&a, out->side, !fine, fine);
+  for (int i = 0; i < ABBE_VIEW_JUDGED_NUMBERS; i++)
+    out->value[i] = number_of(report, numbers[i], &out->error[i]);
+  memset(out->change, 0, sizeof out->change);
+  for (int side = 0; side < 2; side++) {
+    for (int i = 0; i < ABBE_VIEW_SLOPES; i++)
+      out->slope[side][i] = number_of(report, slopes[side][i], &out->slope_error[side][i]);
+    if (isfinite(out->slope[side][0])) change_side(&a, side, out->change[side]);
+  }
   abbe_lib_gem_report_free(report);
   j->done = 1;
   if (j->wake != NULL) j->wake();

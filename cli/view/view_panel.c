@@ -115,6 +115,28 @@ static void choose_material(abbe_view_session *app, const abbe_view_object *obje
   free(value);
 }
 
+/* While the pointer is over the slider that was drawn last: what a degree more will do. */
+static void hint(abbe_view_session *app, const abbe_view_judged *judged, const abbe_view_value *v) {
+  static const char *const names[2] = {"crown", "pavilion"};
+  for (int side = 0; side < 2 && judged != NULL; side++) {
+    const double *by = judged->slope[side];
+    char text[256];
+    if (strcmp(strrchr(v->key, '.') + 1, names[side]) != 0) continue;
+    const double *error = judged->slope_error[side];
+    if (isfinite(by[0]))
+      abbe_number_format(
+          text, sizeof text,
+          "a degree more:\nlight return %+.1f \u00b1 %.1f points\nISO %+.1f \u00b1 %.1f "
+          "points\nfire %+.2f \u00b1 %.2f degrees of light",
+          100 * by[0], 100 * error[0], 100 * by[1], 100 * error[1], by[2], error[2]);
+    else
+      snprintf(text, sizeof text, "at rest it is said here what a degree more will do");
+    if (!abbe_ui_tip(text) || !isfinite(by[0])) continue;
+    app->hinted = judged;
+    app->hinted_side = side;
+  }
+}
+
 /* What it is made of, and its proportions. */
 static void draw_object(abbe_view_session *app, const abbe_view_object *object, bool one_of_many,
                         double now_s) {
@@ -122,8 +144,10 @@ static void draw_object(abbe_view_session *app, const abbe_view_object *object, 
   const abbe_view_judged *judged = abbe_view_judge_of(app, object);
   abbe_ui_scope_begin(object->key);
   choose_material(app, object, now_s);
-  for (size_t k = 0; k < object->value_count; k++)
+  for (size_t k = 0; k < object->value_count; k++) {
     slide(app, &object->value[k], one_of_many ? object->name : "", false, now_s);
+    hint(app, judged, &object->value[k]);
+  }
   for (int k = 0; judged != NULL && k < ABBE_VIEW_JUDGED_NUMBERS; k++)
     abbe_view_panel_pair(numbers[k], "%.1f %% \u00b1 %.1f", 100 * judged->value[k],
                          100 * judged->error[k]);
@@ -339,6 +363,7 @@ static void draw_pixel(const abbe_view_session *app) {
 void abbe_view_panel_draw(abbe_view_session *app, double now_s) {
   abbe_view_state *s = &app->state;
   abbe_error error = {0};
+  app->hinted = NULL;
   draw_head(app);
   abbe_ui_gap();
   if (abbe_ui_button("undo")) abbe_view_state_undo(s, now_s);

@@ -55,6 +55,7 @@ typedef struct abbe_view_inspection {
   size_t size[2];              /* so many */
 } abbe_view_inspection;
 enum { ABBE_VIEW_MOST_JUDGED = 4, ABBE_VIEW_JUDGED_LONGEST = 4096 };
+enum { ABBE_VIEW_SLOPES = 3, ABBE_VIEW_FACE = 24 };
 enum { ABBE_VIEW_RETURN, ABBE_VIEW_ISO, ABBE_VIEW_WINDOW, ABBE_VIEW_JUDGED_NUMBERS };
 
 /* A design as light judges it. */
@@ -64,6 +65,10 @@ typedef struct abbe_view_judged {
   size_t side;                            /* pixels a side; 0: nothing was */
   double value[ABBE_VIEW_JUDGED_NUMBERS]; /* shares of 1, and standard errors; NaN: cannot be */
   double error[ABBE_VIEW_JUDGED_NUMBERS];
+  /* By a degree of the crown's and of the pavilion's slider: light return, ISO, fire; NaN: not
+   * known. And what a degree more adds to the light return from place to place. */
+  double slope[2][ABBE_VIEW_SLOPES], slope_error[2][ABBE_VIEW_SLOPES];
+  float change[2][ABBE_VIEW_FACE * ABBE_VIEW_FACE];
 } abbe_view_judged;
 
 typedef struct abbe_view_judge {
@@ -129,15 +134,17 @@ typedef struct abbe_view_session {
   double stop_ms; /* what was made for the one before took to stop; the last times */
   abbe_view_judge judge;
   abbe_view_judged judged[ABBE_VIEW_MOST_JUDGED];
-  bool reports;          /* a report is made */
-  pid_t reporter;        /* by it */
-  size_t turn_frame;     /* frame of the turntable, from 1; 0: it stands */
-  uint64_t turn_serial;  /* what it turns */
-  bool keys;             /* the list of keys is open */
-  bool exposed;          /* the scene's own exposure was taken over */
-  bool turned;           /* the last one is whole */
-  char note[1200];       /* what was saved, or why not */
-  abbe_view_files files; /* files of the scene */
+  const abbe_view_judged *hinted; /* while the pointer is over a slider of its: */
+  int hinted_side;                /* the crown's, 0, or the pavilion's */
+  bool reports;                   /* a report is made */
+  pid_t reporter;                 /* by it */
+  size_t turn_frame;              /* frame of the turntable, from 1; 0: it stands */
+  uint64_t turn_serial;           /* what it turns */
+  bool keys;                      /* the list of keys is open */
+  bool exposed;                   /* the scene's own exposure was taken over */
+  bool turned;                    /* the last one is whole */
+  char note[1200];                /* what was saved, or why not */
+  abbe_view_files files;          /* files of the scene */
   double looked_s;
 } abbe_view_session;
 

@@ -39,6 +39,34 @@ TEST(shares_add_up) {
   abbe_lib_gem_report_free(quartz);
 }
 
+/* What a degree does goes the way in which the numbers of finer reports go, and is said where it is
+ * asked for alone. */
+TEST(a_degree_more) {
+  static const char *const with[] = {"size=16", "repeats=3", "wavelengths=2", "tilt_rad=0",
+                                     "slopes=1"};
+  abbe_lib_gem_report *plain = judged("diamond"), *r = NULL, *off = NULL;
+  OK(abbe_lib_gem_report_make(design, "diamond", with, 5, NULL, NULL, &r, &error));
+  assert_true(isnan(number_of(plain, "iso_by_crown")));
+  static const char *const by[] = {"iso_by_crown", "iso_by_pavilion"};
+  static const double own[] = {0.602138592, 0.711221671}, degree = 0.0174532925;
+  static const char *const keys[] = {"crown_rad", "pavilion_rad"};
+  for (int side = 0; side < 2; side++) {
+    double value[2];
+    for (int s = 0; s < 2; s++) {
+      char to[64];
+      snprintf(to, sizeof to, "%s=%.9f", keys[side], own[side] + (2 * s - 1) * degree);
+      const char *moved[] = {"size=48", "repeats=3", "wavelengths=2", "tilt_rad=0", to};
+      OK(abbe_lib_gem_report_make(design, "diamond", moved, 5, NULL, NULL, &off, &error));
+      value[s] = number_of(off, "iso");
+      abbe_lib_gem_report_free(off);
+    }
+    assert_true(number_of(r, by[side]) * (value[1] - value[0]) > 0);
+  }
+  assert_true(isfinite(number_of(r, "fire_by_pavilion")));
+  abbe_lib_gem_report_free(plain);
+  abbe_lib_gem_report_free(r);
+}
+
 /* Its own angles change nothing; a flat pavilion is a window. */
 TEST(angles_are_others) {
   static const char *const own[] = {"size=16",

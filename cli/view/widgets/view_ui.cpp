@@ -271,6 +271,12 @@ bool abbe_ui_slider(const char *label, double *value, double min, double max, co
   return changed;
 }
 
+bool abbe_ui_tip(const char *text) {
+  if (!ImGui::IsItemHovered()) return false;
+  ImGui::SetTooltip("%s", text);
+  return true;
+}
+
 bool abbe_ui_choose(const char *label, const char *const *names, const abbe_ui_colour *colours,
                     size_t count, size_t *index) {
   bool chosen = false;

@@ -57,8 +57,10 @@ bool abbe_ui_button(const char *label);
 /* Changes *value; *began (may be NULL): the hand has just taken hold of it. */
 bool abbe_ui_slider(const char *label, double *value, double min, double max, const char *format,
                     bool logarithmic, bool *began);
-/* colours[count] (may be NULL) are shown beside the names. A name of NULL parts those before it from
- * those behind it. */
+/* Whether the pointer is over the widget that was drawn last; the text stands beside it then. */
+bool abbe_ui_tip(const char *text);
+/* colours[count] (may be NULL) are shown beside the names. A name of NULL parts those before it
+ * from those behind it. */
 bool abbe_ui_choose(const char *label, const char *const *names, const abbe_ui_colour *colours,
                     size_t count, size_t *index);
 

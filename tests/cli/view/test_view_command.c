@@ -87,10 +87,13 @@ TEST(a_design_is_recut) {
 TEST(two_stones_and_a_report) {
   run_must("cp \"$house\"/scenes/designs/step-square.asc a.asc && cp \"$house\"/scenes/designs/"
            "brilliant-quartz.asc b.asc");
-  run_must("printf '%s\\n' 'wait moving' 'slide \"stone 1 crown angle\" 0.4' 'wait balanced' 'wait "
-           "rest' 'assert "
-           "light_return > 0.1' 'click report' 'wait rest' 'assert note contains k-report.pdf' > "
-           "a.txt");
+  run_must(
+      "printf '%s\\n' 'wait moving' 'slide \"stone 1 crown angle\" 0.4' 'wait balanced' 'wait "
+      "rest' 'assert "
+      "light_return > 0.1' 'assert return_by_pavilion < 0' 'wheel \"stone 1 pavilion angle\" 0' "
+      "'assert hinted = 2' 'wheel 20,20 0' 'assert hinted = 0' 'click report' 'wait rest' "
+      "'assert note contains k-report.pdf' > "
+      "a.txt");
   run_must("\"$abbe\" view a.asc b.asc --material quartz --photons 16 --map 64 --wavelengths 3 "
            "--last balanced --size 380x200 --keep k --script a.txt");
   run_must("grep -q %%EOF k-report.pdf && \"$abbe\" gem info k-cut.asc > lines && test -s k.png");

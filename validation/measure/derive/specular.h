@@ -77,6 +77,12 @@ abbe_result abbe_specular_narrow(abbe_specular *s, double min_nm, double max_nm,
 abbe_result abbe_specular_match(abbe_specular *s, const abbe_specular *base, const char *key,
                                 abbe_error *error);
 
+/* A material's index and attenuation (1/m) at a wavelength; shift: of it or of another, or NULL.
+ * Errors of abbe_material_n. */
+abbe_result abbe_specular_index(const abbe_material *material, const abbe_specular_shift *shift,
+                                double lambda_nm, double *n, double *attenuation,
+                                abbe_error *error);
+
 /* Indices and attenuations (1/m) of the refractors at a wavelength. */
 typedef struct abbe_specular_wave {
   double lambda_nm, n[ABBE_SPECULAR_REFRACTORS], a[ABBE_SPECULAR_REFRACTORS];

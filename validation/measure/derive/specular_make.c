@@ -206,24 +206,29 @@ abbe_result abbe_specular_match(abbe_specular *s, const abbe_specular *base, con
   return ABBE_OK;
 }
 
+abbe_result abbe_specular_index(const abbe_material *m, const abbe_specular_shift *shift,
+                                double lambda_nm, double *n, double *attenuation,
+                                abbe_error *error) {
+  const double um = lambda_nm / 1000;
+  *attenuation = abbe_material_attenuation(m, lambda_nm);
+  ABBE_TRY(abbe_material_n(m, lambda_nm, n, error));
+  if (shift == NULL || shift->material == NULL || strcmp(shift->material, m->name) != 0)
+    return ABBE_OK;
+  const abbe_dispersion_numbers d = abbe_dispersion_describe(&m->dispersion);
+  if (shift->v != 0) *n = d.n_d + (*n - d.n_d) * d.v_d / (d.v_d + shift->v);
+  *n += shift->n + shift->b_um2 / (um * um);
+  *attenuation += shift->absorption;
+  return ABBE_OK;
+}
+
 abbe_result abbe_specular_wave_make(const abbe_specular *s, double lambda_nm,
                                     abbe_specular_wave *out, abbe_error *error) {
-  const abbe_specular_shift *shift = &s->shift;
-  const double um = lambda_nm / 1000;
   out->lambda_nm = lambda_nm;
   for (size_t i = 0; i < s->count; i++) {
     if (abbe_object_kind_of(s->surface[i].object) != ABBE_OBJECT_REFRACTOR) continue;
-    const abbe_material *m = s->surface[i].object->material;
-    double n, a = abbe_material_attenuation(m, lambda_nm);
-    ABBE_TRY(abbe_material_n(m, lambda_nm, &n, error));
-    if (shift->material != NULL && strcmp(shift->material, m->name) == 0) {
-      const abbe_dispersion_numbers d = abbe_dispersion_describe(&m->dispersion);
-      if (shift->v != 0) n = d.n_d + (n - d.n_d) * d.v_d / (d.v_d + shift->v);
-      n += shift->n + shift->b_um2 / (um * um);
-      a += shift->absorption;
-    }
-    out->n[s->surface[i].refractor] = n;
-    out->a[s->surface[i].refractor] = a;
+    const uint32_t r = s->surface[i].refractor;
+    ABBE_TRY(abbe_specular_index(s->surface[i].object->material, &s->shift, lambda_nm, &out->n[r],
+                                 &out->a[r], error));
   }
   return ABBE_OK;
 }
