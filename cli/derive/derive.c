@@ -25,6 +25,7 @@ enum {
   OPTION_SPACE,
   OPTION_INTERFACES,
   OPTION_MATERIALS,
+  OPTION_STONE,
   OPTION_JSON
 };
 enum { MOST_SIDE = 4096 };
@@ -53,6 +54,10 @@ static const struct argp_option options[] = {
      "the camera's picture and its derivative by each key, with standard errors; with --map or "
      "--map-like the map of one light",
      0},
+    {"stone", OPTION_STONE, "OBJECT", 0,
+     "instead: light return, ISO, COS, leakage and fire of that stone, seen from straight above as "
+     "it lies in the scene",
+     0},
     {"json", OPTION_JSON, NULL, 0, "the numbers as JSON", 0},
     {"quiet", 'q', NULL, 0, "no progress, no notes", 0},
     {"map-light", OPTION_LIGHT, "NAME", 0, "whose light, its name or number (the first)", 1},
@@ -61,7 +66,8 @@ static const struct argp_option options[] = {
     {"size", OPTION_SIZE, "WxH", 0, "pixels of the picture; the scene's own without", 1},
     {"spp", OPTION_SPP, "N", 0, "samples of each pixel (32)", 1},
     {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
-    {"lines", OPTION_LINES, "N", 0, "across the light's window, in all (1024)", 1},
+    {"lines", OPTION_LINES, "N", 0,
+     "across the light's window, or across the view of a stone, in all (1024)", 1},
     {"points", OPTION_POINTS, "N", 0, "of each line (64)", 1},
     {"interfaces", OPTION_INTERFACES, "N", 0, "that a path may meet, 1 to 32 (12)", 1},
     ABBE_SCENE_INPUT_OPTIONS(1),
@@ -80,6 +86,7 @@ static const abbe_take takes[] = {
     ABBE_TAKE_TEXT(request, OPTION_LIGHT, map.light),
     ABBE_TAKE_TEXT(request, OPTION_LIKE, map.like),
     ABBE_TAKE_TEXT(request, OPTION_MATERIALS, materials),
+    ABBE_TAKE_TEXT(request, OPTION_STONE, stone),
     ABBE_TAKE_SIZE(request, OPTION_MAP, width, height, MOST_SIDE),
     ABBE_TAKE_SIZE(request, OPTION_SIZE, columns, rows, MOST_SIDE),
     ABBE_TAKE_COUNT(request, OPTION_SPP, samples, 1, 1e6),
@@ -108,6 +115,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case ARGP_KEY_END:
     if (q->path == NULL) argp_error(state, "of which scene? Try scenes/prism.yaml");
     if (q->keys == 0) argp_error(state, "by what? Give --by KEY, such as objects.prism.apex");
+    if (q->stone != NULL && (q->exr != NULL || q->width > 0 || q->map.light || q->map.like))
+      argp_error(state, "--stone has numbers alone: -o and --map are of pictures and caustics");
     if (q->changes.set_count >= ABBE_SCENE_INPUT_MOST)
       argp_error(state, "no more than %d --set", ABBE_SCENE_INPUT_MOST - 1);
     return 0;
@@ -381,14 +390,16 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   abbe_result result = moved == NULL || key == NULL
                            ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the keys")
                            : abbe_map_options_resolve(&q->map, scene, true, error);
-  if (result == ABBE_OK && scene->light_count == 0 && !picture)
+  if (result == ABBE_OK && scene->light_count == 0 && !picture && q->stone == NULL)
     result =
         abbe_error_set(error, ABBE_UNSUPPORTED,
                        "%s has no light besides its surroundings; a map is of one light", q->path);
   if (result == ABBE_OK) result = abbe_spectral_sampling_make(scene, &spectrum, &sampling, error);
   for (size_t k = 0; k < q->keys && result == ABBE_OK; k++)
     result = abbe_derive_move(q, k, scene, &moved[k], &key[k], error);
-  if (result == ABBE_OK) {
+  if (result == ABBE_OK && q->stone != NULL) {
+    result = abbe_derive_stone(q, scene, key, error);
+  } else if (result == ABBE_OK) {
     abbe_progress_begin(&progress, "deriving", q->quiet);
     result = (picture ? derive_picture : derive_map)(q, scene, key, &sampling, &progress, error);
   }
@@ -410,13 +421,16 @@ static const struct argp parser = {
         "texels (XYZ), and of the light's flux, chromaticity, middle and spread. All are by one "
         "unit of each key (angles in degrees, lengths in metres). Paths are followed in double "
         "precision, edges of facets and shadows are "
-        "included, and standard errors are given.\v"
+        "included, and standard errors are given. With --stone it is of what a stone returns of "
+        "light.\v"
         "Examples:\n"
         "  abbe derive scenes/prism.yaml --by objects.prism.apex --by materials.sf10.n\n"
         "  abbe derive scenes/sphere.yaml --by objects.ball.radius --size 128x128 -o ball.exr\n"
         "  abbe derive scenes/sphere.yaml --by objects.ball.radius --map 128x128 -o map.exr\n"
         "  abbe derive scenes/gem.yaml --by lights.lamp.position.0 --by lights.lamp.intensity "
-        "--json\n",
+        "--json\n"
+        "  abbe derive scenes/stone.yaml --stone stone --by objects.stone.pavilion --by "
+        "materials.quartz.n\n",
 };
 
 int abbe_command_derive(int argc, char **argv) {

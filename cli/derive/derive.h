@@ -1,4 +1,5 @@
-/* derive.h: what `abbe derive` is asked for, and the scenes in which a key is moved.
+/* derive.h: what `abbe derive` is asked for, and the scenes in which a key is moved, and a
+ * stone's numbers.
  *
  * Internal to cli/derive/.
  */
@@ -12,7 +13,7 @@
 enum { ABBE_DERIVE_MOST_KEYS = 16 };
 
 typedef struct abbe_derive_request {
-  const char *program, *path, *materials, *exr;
+  const char *program, *path, *materials, *exr, *stone;
   bool json, quiet;
   const char *key[ABBE_DERIVE_MOST_KEYS];
   double value[ABBE_DERIVE_MOST_KEYS]; /* as the scene has it; of a material: 0 */
@@ -34,5 +35,9 @@ typedef struct abbe_derive_moved {
  * this fails. Errors of abbe_scene_input_load_with, and for a key that is no number. */
 abbe_result abbe_derive_move(abbe_derive_request *request, size_t k, const abbe_scene *scene,
                              abbe_derive_moved *moved, abbe_pixels_key *out, abbe_error *error);
+
+/* The measures of the stone --stone, and their derivatives by the keys, to stdout. */
+abbe_result abbe_derive_stone(const abbe_derive_request *request, const abbe_scene *scene,
+                              const abbe_pixels_key *key, abbe_error *error);
 
 #endif

@@ -66,6 +66,23 @@ static abbe_result load_moved(const request *q, const char *path, const char *ke
                         why.text);
 }
 
+/* A number of the file, or the angle that a cut has where the file names none. */
+static abbe_result read_value(const request *q, const abbe_scene *scene, const char *key,
+                              double *value, abbe_error *error) {
+  const abbe_result result =
+      abbe_scene_input_number(scene, q->materials, &q->changes, key, value, error);
+  for (size_t i = 0; i < scene->object_count && result != ABBE_OK; i++)
+    for (int side = 0; side < 2; side++) {
+      const abbe_object *o = &scene->object[i];
+      char text[320];
+      snprintf(text, sizeof text, "objects.%.200s.%s", o->name, side == 0 ? "crown" : "pavilion");
+      if (strcmp(text, key) != 0 || !(o->cut_deg[side] > 0)) continue;
+      *value = o->cut_deg[side];
+      return ABBE_OK;
+    }
+  return result;
+}
+
 abbe_result abbe_derive_move(request *q, size_t k, const abbe_scene *scene,
                              abbe_derive_moved *moved, abbe_pixels_key *out, abbe_error *error) {
   static char names[ABBE_DERIVE_MOST_KEYS][ABBE_MATERIAL_MAX_NAME + 1];
@@ -75,8 +92,7 @@ abbe_result abbe_derive_move(request *q, size_t k, const abbe_scene *scene,
       read_material_key(q->key[k], scene, names[k], &out->shift[1], &out->step, &material, error));
   out->shift[0] = less(&out->shift[1]);
   if (!material) {
-    ABBE_TRY(
-        abbe_scene_input_number(scene, q->materials, &q->changes, q->key[k], &q->value[k], error));
+    ABBE_TRY(read_value(q, scene, q->key[k], &q->value[k], error));
     out->step = fmax(1e-5 * fabs(q->value[k]), 1e-6);
     if (q->value[k] != 0) out->step = fmin(out->step, 1e-3 * fabs(q->value[k]));
   }

@@ -20,6 +20,17 @@ static void begin(void) {
       "- {name: ball, shape: sphere, radius: 0.05, mirror: 1}\n"
       "- {name: room, shape: box, size: [2, 2, 2], reflectance: 0.5}\n"
       "Y");
+  run_must("cat >glass.yaml <<'Y'\n"
+           "materials: [{name: glass, model: constant, coefficients: [1.6], source: here,\n"
+           "  absorption: {attenuation_per_m: [[400, 25], [700, 25]]}}]\n"
+           "Y");
+  run_must("cat >pane.yaml <<'Y'\n"
+           "materials: glass.yaml\n"
+           "camera: {eye: [0, -0.9, 0], target: [0, 0, 0]}\n"
+           "environment: {uniform: 1}\n"
+           "objects:\n"
+           "- {name: pane, shape: box, size: [0.02, 0.02, 0.004], material: glass}\n"
+           "Y");
 }
 
 GROUP(begin, run_teardown);
@@ -82,6 +93,61 @@ TEST(a_picture_by_its_lamps_power) {
   }
 }
 
+/* A pane seen from straight above returns R + (1 - R)^2 R T^2 / (1 - R^2 T^2) of the light, and so
+ * do all measures of a pane but the leakage, for all exits go straight up; the head's shadow takes
+ * what returns. */
+static double pane_returns(double n, double absorption, double thick) {
+  const double r = pow((n - 1) / (n + 1), 2), t = exp(-2 * absorption * thick);
+  return r + (1 - r) * (1 - r) * r * t / (1 - r * r * t);
+}
+
+TEST(a_panes_measures_by_its_numbers) {
+  HELD(cJSON, json) = run_json("$abbe derive pane.yaml --stone pane --by materials.glass.n --by "
+                               "materials.glass.absorption --by objects.pane.size.2 --by "
+                               "materials.glass.B --by camera.eye.1 --json",
+                               0);
+  assert_contains(run_errors, "does not change with 'camera.eye.1'");
+  assert_false(strstr(run_errors, "materials.glass.B'"));
+  const cJSON *rows = json_item(json, "rows");
+  const double h = 1e-6;
+  const double exact[] = {
+      pane_returns(1.6, 25, 0.004),
+      (pane_returns(1.6 + h, 25, 0.004) - pane_returns(1.6 - h, 25, 0.004)) / (2 * h),
+      (pane_returns(1.6, 25 + h, 0.004) - pane_returns(1.6, 25 - h, 0.004)) / (2 * h),
+      (pane_returns(1.6, 25, 0.004 + h) - pane_returns(1.6, 25, 0.004 - h)) / (2 * h)};
+  for (int i = 0; i < 4; i++) {
+    const cJSON *row = cJSON_GetArrayItem(rows, i);
+    /* paths end below 1e-4 of the light */
+    assert_near(value(row, "iso", 0), exact[i], 5e-4 * fabs(exact[i]));
+    assert_near(value(row, "cos", 0), exact[i], 5e-4 * fabs(exact[i]));
+    assert_true(value(row, "iso", 1) < 1e-6 * fabs(exact[i]));
+    assert_true(value(row, "return", 0) == 0 && value(row, "fire", 0) == 0);
+  }
+  assert_true(value(cJSON_GetArrayItem(rows, 5), "iso", 0) == 0);
+}
+
+/* By differences of the same lines, in the design's own angle, which the file does not name; the
+ * measures of a stone are those of its index. */
+TEST(a_cuts_measures_by_its_angle) {
+  static const char *const names[] = {"return", "iso", "cos", "leakage", "fire"};
+  double at[2][5], slope[5];
+  for (int i = 0; i < 3; i++) {
+    static const char *const sets[] = {"--set objects.stone.pavilion=42.9995",
+                                       "--set objects.stone.pavilion=43.0005", ""};
+    HELD(cJSON, json) =
+        run_json(printed("$abbe derive \"$house\"/scenes/stone.yaml --stone stone --by "
+                         "objects.stone.pavilion --lines 64 -q --json %s",
+                         sets[i]),
+                 0);
+    const cJSON *row = cJSON_GetArrayItem(json_item(json, "rows"), i == 2);
+    for (int k = 0; k < 5; k++) *(i < 2 ? &at[i][k] : &slope[k]) = value(row, names[k], 0);
+  }
+  for (int k = 0; k < 5; k++) {
+    const double exact = (at[1][k] - at[0][k]) / 0.001;
+    assert_near(slope[k], exact, 1e-3 * fabs(exact) + 1e-4);
+  }
+}
+
 TEST(refusals) {
   run_fails(DERIVE "--by objects.ball.radios", 1, "did you mean 'radius'?");
   run_fails(DERIVE "--by objects.ball.shape", 1, "is no number");
@@ -94,6 +160,12 @@ TEST(refusals) {
   run_fails("$abbe derive polarised.yaml --by objects.ball.radius -o picture.exr", 1,
             "there is a polariser");
   run_fails(DERIVE, 2, "Give --by KEY");
+  run_fails(DERIVE "--by objects.ball.radius --stone bal", 1, "has no object 'bal'");
+  run_fails(DERIVE "--by objects.ball.radius --stone ball", 1, "'ball' is no stone");
+  run_fails("$abbe derive pane.yaml --stone pan --by materials.glass.n", 1, "did you mean 'pane'?");
+  run_fails("$abbe derive pane.yaml --stone pane --by objects.pane.material", 1, "is no number");
+  run_fails("$abbe derive pane.yaml --stone pane --by materials.glass.n -o map.exr", 2,
+            "-o and --map are of pictures");
   run_fails(DERIVE "--by objects.ball.radius --lines 64 -q -o gone/map.exr", 1,
             "its folder is not there");
   run_fails("$abbe derive nowhere.yaml --by objects.ball.radius", 1,
