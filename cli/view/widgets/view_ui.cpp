@@ -214,8 +214,8 @@ void abbe_ui_panel_end(void) {
 }
 
 bool abbe_ui_section(const char *label, bool open) {
-  const bool is_open = ImGui::CollapsingHeader(whole(label).c_str(), open ? ImGuiTreeNodeFlags_DefaultOpen
-                                                           : ImGuiTreeNodeFlags_None);
+  const bool is_open = ImGui::CollapsingHeader(
+      whole(label).c_str(), open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
   note(label);
   return is_open;
 }
@@ -301,7 +301,8 @@ bool abbe_ui_choose(const char *label, const char *const *names, const abbe_ui_c
     if (colours != nullptr) {
       const ImVec2 corner = ImGui::GetCursorScreenPos();
       const float side = ImGui::GetTextLineHeight();
-      list()->AddRectFilled(corner, ImVec2(corner.x + side, corner.y + side), colour_of(colours[i]));
+      list()->AddRectFilled(corner, ImVec2(corner.x + side, corner.y + side),
+                            colour_of(colours[i]));
       ImGui::Dummy(ImVec2(side, side));
       ImGui::SameLine();
     }
