@@ -27,7 +27,31 @@ foreach(name open linkat fdopen fchmod fsync fclose rename pwrite)
   target_link_options(faults_disk INTERFACE LINKER:--wrap=${name})
 endforeach()
 abbe_test(full_disk cpu WRAPPED faults_disk abbe_validation abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
-abbe_label(cpu memory NAMES no_memory_tables no_memory_scenes no_memory_trace full_disk)
+
+# The calls of Abbe's own objects of OpenEXR and Little CMS, and for reading (faults/library.h).
+add_library(faults_library OBJECT faults/library.c)
+target_link_libraries(faults_library PUBLIC abbe_build OpenEXR::OpenEXRCore PkgConfig::LCMS)
+foreach(name exr_get_count exr_get_storage exr_get_compression exr_get_data_window
+    exr_get_display_window exr_get_channels exr_get_scanlines_per_chunk exr_get_attribute_count
+    exr_get_attribute_by_index exr_get_tile_descriptor exr_get_level_sizes
+    exr_read_scanline_chunk_info exr_read_tile_chunk_info exr_decoding_initialize
+    exr_decoding_update exr_decoding_choose_default_routines exr_decoding_run
+    exr_encoding_initialize exr_encoding_update exr_encoding_choose_default_routines
+    exr_encoding_run exr_start_write exr_set_longname_support exr_add_part
+    exr_initialize_required_attr_simple exr_attr_set_string exr_attr_set_chromaticities
+    exr_add_channel exr_write_header exr_write_scanline_chunk_info cmsBuildParametricToneCurve
+    cmsCreateRGBProfile cmsMLUalloc cmsSaveProfileToMem cmsOpenProfileFromMem
+    cmsCreate_sRGBProfile cmsCreateTransform pread pwrite fseek fseeko fread ferror)
+  target_link_options(faults_library INTERFACE LINKER:--wrap=${name})
+endforeach()
+if(DEFLATE_FOUND)
+  target_link_libraries(faults_library PUBLIC PkgConfig::DEFLATE)
+  target_compile_definitions(faults_library PRIVATE ABBE_HAS_DEFLATE)
+  target_link_options(faults_library INTERFACE LINKER:--wrap=libdeflate_alloc_compressor
+    LINKER:--wrap=libdeflate_alloc_decompressor)
+endif()
+abbe_test(library_faults cpu WRAPPED faults_library exr_library abbe_colorimetry abbe_spectral abbe_base)
+abbe_label(cpu memory NAMES no_memory_tables no_memory_scenes no_memory_trace full_disk library_faults)
 
 # Kills the program, or starves it, at a chosen call (faults/preload.c).
 add_library(faults_preload MODULE faults/preload.c)

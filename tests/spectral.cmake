@@ -1,7 +1,7 @@
 foreach(name wavelengths spectrum optics film polarisation microfacets biaxial uniaxial uniaxial_answers
         dispersion index_points fit points csv_points
         material material_numbers material_query material_table crystal_record partners absorption glass_distance convert
-        agf agf_write rii material_write mtlx material_import
+        agf agf_lines agf_write rii material_write mtlx material_import
         import_batch
         check check_right table_edit table_fix)
   abbe_test(${name} cpu abbe_spectral abbe_base)

@@ -306,7 +306,7 @@ abbe_result adjust(const OCIO::ConstConfigRcPtr &config, const abbe_display_desc
                    const char *view, abbe_display *out, abbe_error *error) {
   static const double d65[2] = {0.3127, 0.3290};
   const char *name = config_name(desc->config);
-  const bool balanced = desc->white[0] != 0 || desc->white[1] != 0;
+  const bool balanced = desc->white[0] != 0;
   const bool mapped = desc->gamut != ABBE_GAMUT_MAP_NONE;
   if (door.space.empty())
     return abbe_error_set(error, ABBE_COLOUR,
@@ -384,7 +384,7 @@ abbe_result make_on(const OCIO::ConstConfigRcPtr &config, const char *display,
   source_space source;
   ABBE_TRY(find_source(config, desc, door, &source, error));
   abbe_display made = {};
-  const bool by_xyz = desc->white[0] != 0 || desc->white[1] != 0 || desc->gamut != 0;
+  const bool by_xyz = desc->white[0] != 0 || desc->gamut != 0;
   made.adjusts = by_xyz || desc->exposure != 0;
   find_encoding(config, display, view.c_str(), &made);
   if (by_xyz)
@@ -426,9 +426,6 @@ abbe_result abbe_display_make(const abbe_display_desc *desc, abbe_display **out,
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the white x, y = %g, %g is none; such as 0.3127, 0.3290 is", white[0],
                           white[1]);
-  if (static_cast<unsigned>(desc->gamut) >= ABBE_GAMUT_MAP_COUNT)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no gamut map number %d",
-                          static_cast<int>(desc->gamut));
   return guarded(config_name(desc->config), error, [=] { return make(desc, out, error); });
 }
 

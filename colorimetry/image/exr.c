@@ -15,15 +15,15 @@
 
 static abbe_exr_stream *stream_of(exr_const_context_t context) {
   void *user = NULL;
-  return exr_get_user_data(context, &user) == EXR_ERR_SUCCESS ? user : NULL;
+  exr_get_user_data(context, &user); /* there is none of no context */
+  return user;
 }
 
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message) {
   (void)code;
   abbe_exr_stream *s = stream_of(context);
 #pragma omp critical(abbe_exr_message)
-  if (s != NULL && s->message[0] == '\0')
-    snprintf(s->message, sizeof s->message, "%s", message == NULL ? "" : message);
+  if (s != NULL && s->message[0] == '\0') snprintf(s->message, sizeof s->message, "%s", message);
 }
 
 static int64_t read_at(exr_const_context_t context, void *user, void *buffer, uint64_t size,
@@ -34,11 +34,17 @@ static int64_t read_at(exr_const_context_t context, void *user, void *buffer, ui
   while (done < size) {
     ssize_t n = pread(s->fd, bytes + done, size - done, (off_t)(offset + done));
     if (n < 0 && errno == EINTR) continue;
+    if (n == 0 && offset + done < (uint64_t)s->size) { /* it has become shorter */
+      errno = EIO;
+      n = -1;
+    }
     if (n < 0) {
       /* an offset past what the system can seek to is the file's lie, not the disk's failure */
       if (errno != EINVAL && errno != EOVERFLOW) s->io_errno = errno;
       fail(context, EXR_ERR_READ_IO, "%s", strerror(errno));
-      return -1;
+      s->failed =
+          true; /* 3.1.5 writes before its buffer where a read of what is not packed is -1 */
+      return 0;
     }
     if (n == 0) break;
     done += (uint64_t)n;
@@ -116,7 +122,6 @@ static bool is_shown(const abbe_exr_place *to, int64_t width, int64_t height) {
 
 static void repeat_line(const abbe_image *image, int64_t line, int64_t past) {
   const size_t row = image->width * image->channels;
-  if (line < 0) return;
   for (int64_t y = line + 1; y < past && y < (int64_t)image->height; y++)
     memcpy(image->data + (size_t)y * row, image->data + (size_t)line * row, row * sizeof(float));
 }
@@ -198,7 +203,7 @@ static exr_result_t run(const job *j) {
     }
     for (size_t p = 0; p < r->parts; p++) abbe_exr_source_free(r->context, &own[p]);
   }
-  return failed;
+  return failed == 0 && r->stream.failed ? EXR_ERR_READ_IO : failed;
 }
 
 static exr_result_t run_tiles(job *j) {
@@ -241,13 +246,17 @@ static void advance(abbe_exr_reader *r) {
   }
 }
 
+/* One of what is no mipmap: of ripmaps OpenEXR's C core 3.1 looks for tiles in wrong chunks. */
 static size_t count_levels(exr_context_t context, const abbe_exr_layout *l) {
-  int32_t x = 1, y = 1;
+  int32_t levels = 1, high = 1;
+  uint32_t width, height;
+  exr_tile_level_mode_t mode = EXR_TILE_ONE_LEVEL;
+  exr_tile_round_mode_t rounding;
   const bool same = memcmp(&l->data, &l->display, sizeof l->data) == 0;
-  if (l->storage != EXR_STORAGE_TILED || !same ||
-      exr_get_tile_levels(context, l->part, &x, &y) != 0)
-    return 1;
-  return (size_t)(x < y ? x : y);
+  if (l->storage != EXR_STORAGE_TILED || !same) return 1;
+  exr_get_tile_descriptor(context, l->part, &width, &height, &mode, &rounding);
+  if (mode == EXR_TILE_MIPMAP_LEVELS) exr_get_tile_levels(context, l->part, &levels, &high);
+  return (size_t)levels;
 }
 
 /* The layout becomes that of a level, whose first pixel is (0, 0), and of a window in it. */
@@ -317,8 +326,9 @@ static abbe_result find_parts(abbe_exr_reader *r, abbe_error *error) {
   abbe_exr_layout *picture = &r->part[0].layout, *data = &r->part[1].layout;
   r->parts = 1;
   ABBE_TRY(abbe_exr_layout_find(r->context, &r->stream, picture, error));
-  if (r->stream.part != NULL || !abbe_exr_find_data(r->context, picture, data)) return ABBE_OK;
-  r->parts = 2;
+  if (r->stream.part == NULL)
+    ABBE_TRY(abbe_exr_find_data(r->context, &r->stream, picture, data, &r->parts, error));
+  if (r->parts == 1) return ABBE_OK;
   r->part[1].first = picture->channels->num_channels;
   return abbe_exr_check_layout(&r->stream, data, channels_of(r), error);
 }
@@ -417,6 +427,7 @@ abbe_result abbe_exr_read_on(abbe_exr_reader *r, double seconds, abbe_image *ima
   exr_result_t rv = 0;
   while (rv == 0 && r->read < r->chunks && abbe_clock_seconds() < until) {
     rv = read_lines(&j, r->part, r->next);
+    if (rv == 0 && r->stream.failed) rv = EXR_ERR_READ_IO;
     r->read++;
     advance(r);
   }

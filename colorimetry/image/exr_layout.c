@@ -170,7 +170,7 @@ static abbe_result check_tiles(exr_context_t context, const abbe_exr_stream *s,
 static abbe_result check_channels(const abbe_exr_stream *s, const abbe_exr_layout *l, int all,
                                   abbe_error *error) {
   if (!is_flat(l->storage)) return unsupported(s, "deep data cannot be read", error);
-  if (l->channels->num_channels < 1 || all > ABBE_IMAGE_MAX_CHANNELS)
+  if (all > ABBE_IMAGE_MAX_CHANNELS)
     return abbe_error_set(error, ABBE_PARSE, "%s: it has %d channels; 1 to %d can be read", s->path,
                           all, ABBE_IMAGE_MAX_CHANNELS);
   for (int i = 0; i < l->channels->num_channels; i++)
@@ -232,7 +232,7 @@ static int picture_rank(const abbe_exr_layout *l) {
   unsigned found = 0;
   for (int i = 0; i < l->channels->num_channels; i++) {
     const char *name = l->channels->entries[i].name.str;
-    const char *at = name[0] != '\0' && name[1] == '\0' ? strchr(names, name[0]) : NULL;
+    const char *at = name[1] == '\0' ? strchr(names, name[0]) : NULL;
     if (at != NULL) found |= 1u << (at - names);
   }
   if (!is_flat(l->storage)) return 0;
@@ -254,7 +254,7 @@ static abbe_result no_such_part(exr_context_t context, const abbe_exr_stream *s,
     exr_get_name(context, i, &name);
     const int more = snprintf(list + used, sizeof list - used, "%s%d%s%.60s%s", i == 0 ? "" : ", ",
                               i + 1, name ? " '" : "", name ? name : "", name ? "'" : "");
-    used += more > 0 ? (size_t)more : 0;
+    used += (size_t)more;
   }
   return abbe_error_set(error, ABBE_NOT_FOUND, "%s: it has no part '%.60s'; there %s %s", s->path,
                         s->part, parts == 1 ? "is" : "are", list);
@@ -293,23 +293,25 @@ static bool shares_a_channel(const exr_attr_chlist_t *a, const exr_attr_chlist_t
   return false;
 }
 
-bool abbe_exr_find_data(exr_context_t context, const abbe_exr_layout *picture,
-                        abbe_exr_layout *out) {
+abbe_result abbe_exr_find_data(exr_context_t context, const abbe_exr_stream *s,
+                               const abbe_exr_layout *picture, abbe_exr_layout *out, size_t *parts,
+                               abbe_error *error) {
   abbe_exr_layout l = {.parts = picture->parts};
-  if (picture->storage != EXR_STORAGE_SCANLINE) return false;
+  if (picture->storage != EXR_STORAGE_SCANLINE) return ABBE_OK;
   for (int i = 0; i < l.parts; i++) {
     const char *id = part_text(context, i, ABBE_EXR_ID_NAME);
     if (i == picture->part || id == NULL || strcmp(id, "data") != 0) continue;
-    if (read_part(context, i, &l) != 0) continue;
+    const exr_result_t rv = read_part(context, i, &l);
+    if (rv != 0) return abbe_exr_fail(s, rv, error);
     if (l.storage != picture->storage || l.compression != picture->compression ||
         memcmp(&l.data, &picture->data, sizeof l.data) != 0 ||
-        memcmp(&l.display, &picture->display, sizeof l.display) != 0 ||
         shares_a_channel(l.channels, picture->channels))
       continue;
     *out = l;
-    return true;
+    *parts = 2;
+    break;
   }
-  return false;
+  return ABBE_OK;
 }
 
 /* A power of two; *unit stays what it is where the text is none. */
@@ -351,7 +353,7 @@ static abbe_result name_band(const exr_attribute_t *a, const abbe_exr_stream *s,
   if (a->type == EXR_ATTR_FLOAT) metres = (double)a->f;
   if (a->type == EXR_ATTR_DOUBLE) metres = a->d;
   if (a->type == EXR_ATTR_STRING) {
-    if (a->string->str == NULL || !abbe_number_read(a->string->str, &end, &metres)) return ABBE_OK;
+    if (!abbe_number_read(a->string->str, &end, &metres)) return ABBE_OK;
     end += strspn(end, " ");
     if (strcmp(end, "nm") == 0) metres *= 1e-9;
     if (strcmp(end, "nm") != 0 && strcmp(end, "m") != 0 && *end != '\0') return ABBE_OK;
@@ -380,10 +382,11 @@ abbe_result abbe_exr_attributes_read(exr_context_t context, int part, const abbe
                                      abbe_image *image, abbe_error *error) {
   int32_t count = 0;
   bool aces = false;
-  if (exr_get_attribute_count(context, part, &count) != 0) return ABBE_OK;
-  for (int32_t i = 0; i < count; i++) {
+  exr_result_t rv = exr_get_attribute_count(context, part, &count);
+  for (int32_t i = 0; rv == 0 && i < count; i++) {
     const exr_attribute_t *a = NULL;
-    if (exr_get_attribute_by_index(context, part, EXR_ATTR_LIST_FILE_ORDER, i, &a) != 0) continue;
+    rv = exr_get_attribute_by_index(context, part, EXR_ATTR_LIST_FILE_ORDER, i, &a);
+    if (rv != 0) break;
     if (a->type == EXR_ATTR_CHROMATICITIES && strcmp(a->name, "chromaticities") == 0) {
       const exr_attr_chromaticities_t *c = a->chromaticities;
       const double xy[8] = {c->red_x,  c->red_y,  c->green_x, c->green_y,
@@ -392,8 +395,7 @@ abbe_result abbe_exr_attributes_read(exr_context_t context, int part, const abbe
     }
     if (a->type == EXR_ATTR_INT && strcmp(a->name, "acesImageContainerFlag") == 0) aces = a->i == 1;
     ABBE_TRY(name_band(a, s, image, error));
-    if (a->type != EXR_ATTR_STRING || a->name[0] == '\0' || a->string->str == NULL) continue;
-    if (is_own(a->name)) continue;
+    if (a->type != EXR_ATTR_STRING || is_own(a->name)) continue;
     if (image->attribute_count == ABBE_IMAGE_MAX_ATTRIBUTES)
       return abbe_error_set(error, ABBE_UNSUPPORTED,
                             "%s: it has more than %d text attributes, which is as many as can be "
@@ -401,6 +403,7 @@ abbe_result abbe_exr_attributes_read(exr_context_t context, int part, const abbe
                             s->path, ABBE_IMAGE_MAX_ATTRIBUTES);
     ABBE_TRY(abbe_image_set_attribute(image, a->name, a->string->str, error));
   }
+  if (rv != 0) return abbe_exr_fail(s, rv, error);
   if (!aces) return ABBE_OK;
   /* An ACES container has AP0, whatever else the file says [ColorInterop2026]. */
   memset(image->xy, 0, sizeof image->xy);

@@ -23,6 +23,7 @@ typedef struct abbe_exr_stream {
   int fd;
   int64_t size;
   int io_errno; /* error of a failed system call; 0: the bytes themselves are at fault */
+  bool failed;  /* some read has */
   char message[512];
 } abbe_exr_stream;
 
@@ -97,9 +98,11 @@ abbe_result abbe_exr_check_layout(const abbe_exr_stream *s, const abbe_exr_layou
                                   abbe_error *error);
 
 /* The first part besides that is marked as data, of the same windows in the same chunks and with
- * channels of other names: what is no colour of the same picture. False: there is none. */
-bool abbe_exr_find_data(exr_context_t context, const abbe_exr_layout *picture,
-                        abbe_exr_layout *out);
+ * channels of other names: what is no colour of the same picture. *parts becomes 2 where there is
+ * one. */
+abbe_result abbe_exr_find_data(exr_context_t context, const abbe_exr_stream *s,
+                               const abbe_exr_layout *picture, abbe_exr_layout *out, size_t *parts,
+                               abbe_error *error);
 
 /* Chromaticities and texts of a part's header, and the wavelengths that channels are called by.
  * ABBE_PARSE for a wavelength that is none, ABBE_UNSUPPORTED for too many texts. */

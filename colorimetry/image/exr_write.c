@@ -122,11 +122,10 @@ static exr_result_t write_header(exr_context_t context, const abbe_image *image,
 }
 
 /* Points every channel of the chunk at its samples, the first of which is in line y. */
-static bool point_channels(exr_coding_channel_info_t *channels, int count, const abbe_image *image,
+static void point_channels(exr_coding_channel_info_t *channels, int count, const abbe_image *image,
                            size_t y) {
   for (int i = 0; i < count; i++) {
-    size_t c = abbe_image_find_channel(image, channels[i].channel_name);
-    if (c == (size_t)-1) return false;
+    const size_t c = abbe_image_find_channel(image, channels[i].channel_name);
     const float *first = image->data + y * image->width * image->channels + c;
     channels[i].user_bytes_per_element = sizeof(float);
     channels[i].user_data_type = EXR_PIXEL_FLOAT;
@@ -134,13 +133,12 @@ static bool point_channels(exr_coding_channel_info_t *channels, int count, const
     channels[i].user_line_stride = (int32_t)(image->width * image->channels * sizeof(float));
     channels[i].encode_from_ptr = (const uint8_t *)first;
   }
-  return true;
 }
 
 /* What compresses a part's chunks, of one thread. */
 typedef struct codec {
-  exr_result_t (*compress)(exr_encode_pipeline_t *pipe); /* the library's; NULL: nothing packs */
-  exr_result_t (*write)(exr_encode_pipeline_t *pipe);    /* the library's */
+  exr_result_t (*compress)(exr_encode_pipeline_t *pipe); /* the library's, and its own to write */
+  exr_result_t (*write)(exr_encode_pipeline_t *pipe);
   void *deflater;
   uint8_t *differences; /* [bytes] what is packed */
   size_t bytes;
@@ -151,7 +149,7 @@ typedef struct codec {
 static bool deflate(exr_encode_pipeline_t *pipe, codec *own) {
 #ifdef ABBE_HAS_DEFLATE
   enum { LEVEL = 1 }; /* higher ones make floats smaller by less than a hundredth */
-  const size_t size = pipe->packed_bytes, half = (size + 1) / 2;
+  const size_t size = pipe->packed_bytes, half = size / 2; /* a sample has 2 or 4 bytes */
   const uint8_t *in = pipe->packed_buffer;
   if (own->deflater == NULL) own->deflater = libdeflate_alloc_compressor(LEVEL);
   if (own->bytes < size) {
@@ -165,10 +163,9 @@ static bool deflate(exr_encode_pipeline_t *pipe, codec *own) {
     pipe->compressed_alloc_size = pipe->compressed_buffer != NULL ? size : 0;
   }
   uint8_t *a = own->differences;
-  if (own->deflater == NULL || a == NULL || pipe->compressed_buffer == NULL || size < 2)
-    return false;
+  if (own->deflater == NULL || a == NULL || pipe->compressed_buffer == NULL) return false;
   for (size_t i = 0; i < half; i++) a[i] = in[2 * i];
-  for (size_t i = 0; i < size - half; i++) a[half + i] = in[2 * i + 1];
+  for (size_t i = 0; i < half; i++) a[half + i] = in[2 * i + 1];
   for (size_t i = size - 1; i > 0; i--) a[i] = (uint8_t)(a[i] - a[i - 1] + 128);
   pipe->compressed_bytes =
       libdeflate_zlib_compress(own->deflater, a, size, pipe->compressed_buffer, size);
@@ -205,7 +202,7 @@ static exr_result_t choose_routines(exr_context_t context, int part, codec *own,
   own->compress = pipe->compress_fn;
   own->write = pipe->write_fn;
   pipe->encoding_user_data = own;
-  if (own->compress != NULL) pipe->compress_fn = compress;
+  pipe->compress_fn = compress;
   pipe->write_fn = write_in_turn;
   pipe->yield_until_ready_fn = NULL; /* the library refuses what is not next, and does not wait */
   return rv;
@@ -219,8 +216,7 @@ static exr_result_t write_chunk(exr_context_t context, int part, const abbe_imag
   if (rv != 0) return rv;
   rv = begun ? exr_encoding_update(context, part, &chunk, pipe)
              : exr_encoding_initialize(context, part, &chunk, pipe);
-  if (rv == 0 && !point_channels(pipe->channels, pipe->channel_count, image, y))
-    rv = EXR_ERR_UNKNOWN;
+  if (rv == 0) point_channels(pipe->channels, pipe->channel_count, image, y);
   if (rv == 0 && !begun) rv = choose_routines(context, part, own, pipe);
   return rv == 0 ? exr_encoding_run(context, part, pipe) : rv;
 }
@@ -228,7 +224,7 @@ static exr_result_t write_chunk(exr_context_t context, int part, const abbe_imag
 static exr_result_t write_chunks(exr_context_t context, int part, const abbe_image *image) {
   int32_t lines = 0;
   exr_result_t failed = exr_get_scanlines_per_chunk(context, part, &lines);
-  if (failed != 0 || lines < 1) return failed;
+  if (failed != 0) return failed;
   const size_t chunks = (image->height + (size_t)lines - 1) / (size_t)lines;
 #pragma omp parallel if (image->width * image->height * image->channels > 1 << 18)
   {
@@ -296,7 +292,7 @@ static abbe_result write_file(const char *path, const abbe_image *image, storage
   ABBE_TRY(abbe_file_writer_open(&writer, path, error));
   target t = {.path = path, .fd = fileno(writer.stream)};
   exr_result_t rv = write_image(&t, image, as);
-  if (rv == EXR_ERR_SUCCESS && t.io_errno == 0) return abbe_file_writer_commit(&writer, error);
+  if (rv == EXR_ERR_SUCCESS) return abbe_file_writer_commit(&writer, error);
   abbe_file_writer_discard(&writer);
   abbe_result code = t.io_errno != 0               ? ABBE_IO
                      : rv == EXR_ERR_OUT_OF_MEMORY ? ABBE_NO_MEMORY

@@ -260,12 +260,10 @@ static abbe_result read_header(header *h, abbe_image *attributes, abbe_error *er
   ABBE_TRY(abbe_file_read_text(h->path, MOST_HEADER, &text, &size, error));
   for (int k = 0; k < KEYS; k++) h->value[k] = NAN;
   at = text + strcspn(text, "\n");
+  at += *at == '\n';
   h->line = 2;
   abbe_result result = ABBE_OK;
-  while (result == ABBE_OK && *at != '\0') {
-    if (h->line == 2 && *at == '\n') at++;
-    result = read_line(h, &at, attributes, error);
-  }
+  while (result == ABBE_OK && *at != '\0') result = read_line(h, &at, attributes, error);
   free(text);
   if (result == ABBE_OK) result = check_header(h, error);
   return result == ABBE_OK ? become_nanometres(h, attributes, error) : result;

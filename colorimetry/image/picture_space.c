@@ -135,8 +135,9 @@ static void cubehelix(double t, double rgb[3]) {
   rgb[2] = t + 1.97294 * c;
 }
 
+/* Of CIELAB's f where it is above 6/29, as all of this map is. */
 static double from_lab(double f) {
-  return f > 6.0 / 29 ? f * f * f : 3 * 6.0 / 29 * 6.0 / 29 * (f - 4.0 / 29);
+  return f * f * f;
 }
 
 static double srgb_encoded(double linear) {

@@ -33,7 +33,7 @@ typedef struct job {
 
 static void on_error(png_structp png, png_const_charp message) {
   job *j = png_get_error_ptr(png);
-  if (j->message[0] == '\0') snprintf(j->message, sizeof j->message, "%s", message);
+  snprintf(j->message, sizeof j->message, "%s", message);
   longjmp(png_jmpbuf(png), 1);
 }
 

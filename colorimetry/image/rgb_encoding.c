@@ -205,8 +205,10 @@ static cmsHPROFILE make_profile(const double xy[8], const double curve[5]) {
   cmsToneCurve *const all[3] = {one, one, one};
   cmsHPROFILE profile = one == NULL ? NULL : cmsCreateRGBProfile(&white, &primaries, all);
   cmsFreeToneCurve(one);
-  cmsMLU *text = profile == NULL ? NULL : cmsMLUalloc(NULL, 1);
-  if (text == NULL) return profile;
+  if (profile == NULL) return NULL;
+  cmsMLU *text = cmsMLUalloc(NULL, 1);
+  if (text == NULL) cmsCloseProfile(profile);
+  if (text == NULL) return NULL;
   cmsMLUsetASCII(text, "en", "US", p3 ? "Display P3" : "RGB of a display");
   cmsWriteTag(profile, cmsSigProfileDescriptionTag, text);
   cmsMLUsetASCII(text, "en", "US", "No copyright, use freely");
@@ -229,15 +231,17 @@ abbe_result abbe_rgb_encoding_profile(const double xy[8], const double curve[5],
   cmsHPROFILE profile = abbe_rgb_encoding_is_known(xy, curve) ? make_profile(xy, curve) : NULL;
   if (profile == NULL) return no_profile(error);
   cmsUInt32Number bytes = 0;
-  abbe_result result = ABBE_OK;
-  void *made = cmsSaveProfileToMem(profile, NULL, &bytes) && bytes > 128 ? malloc(bytes) : NULL;
-  if (made == NULL || !cmsSaveProfileToMem(profile, made, &bytes)) {
-    free(made);
-    result = no_profile(error);
-  } else {
+  void *made = NULL;
+  abbe_result result = cmsSaveProfileToMem(profile, NULL, &bytes) ? ABBE_OK : no_profile(error);
+  if (result == ABBE_OK && (made = malloc(bytes)) == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for an ICC profile");
+  if (result == ABBE_OK && !cmsSaveProfileToMem(profile, made, &bytes)) result = no_profile(error);
+  if (result == ABBE_OK) {
     fix_date(made);
     *icc = made;
     *size = bytes;
+  } else {
+    free(made);
   }
   cmsCloseProfile(profile);
   return result;
@@ -283,7 +287,7 @@ abbe_result abbe_rgb_encoding_to_srgb(abbe_image *image, const char *name, abbe_
 abbe_result abbe_rgb_encoding_profile_to_srgb(abbe_image *image, const void *icc, size_t size,
                                               const char *name, abbe_error *error) {
   const cmsUInt32Number one = FLOAT_SH(1) | CHANNELS_SH(1) | EXTRA_SH(2) | BYTES_SH(4);
-  cmsHPROFILE from = size <= UINT32_MAX ? cmsOpenProfileFromMem(icc, (cmsUInt32Number)size) : NULL;
+  cmsHPROFILE from = cmsOpenProfileFromMem(icc, (cmsUInt32Number)size);
   cmsHPROFILE to = cmsCreate_sRGBProfile();
   const cmsColorSpaceSignature space = from == NULL ? 0 : cmsGetColorSpace(from);
   cmsHTRANSFORM transform = NULL;

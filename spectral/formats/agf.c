@@ -50,7 +50,7 @@ static abbe_result keep_text(reader *r, const char *text, char **out) {
   while (length > 0 && abbe_agf_is_blank(text[length - 1])) length--;
   if (length == 0 || *out != NULL) return ABBE_OK;
   if (length > MAX_TEXT) length = MAX_TEXT;
-  while (length > 0 && ((unsigned char)text[length] & 0xc0) == 0x80) length--; /* a whole letter */
+  while (((unsigned char)text[length] & 0xc0) == 0x80) length--; /* a whole letter */
   *out = malloc(length + 1);
   if (*out == NULL) return abbe_error_set(r->error, ABBE_NO_MEMORY, "%s: no memory", r->file);
   memcpy(*out, text, length);

@@ -223,13 +223,11 @@ static bool write_sum(const abbe_dispersion *d, bool pole_squared, abbe_agf_form
   }
   if (d->c[0] != 0 && terms == 5) return false;
   if (d->c[0] != 0) c[2 * terms++] = d->c[0];
-  for (size_t i = 0; i < sizeof sums / sizeof sums[0]; i++)
-    if (sums[i].terms >= terms) {
-      out->number = sums[i].number;
-      memcpy(out->c, c, sizeof c);
-      return true;
-    }
-  return false;
+  size_t form = 0;
+  while (sums[form].terms < terms) form++;
+  out->number = sums[form].number;
+  memcpy(out->c, c, sizeof c);
+  return true;
 }
 
 /* The square of sum c_k x^k, x = L^-2, is a polynomial of Schott's kind. */
@@ -307,9 +305,10 @@ static bool write_same(const abbe_dispersion *d, abbe_agf_formula *out) {
 }
 
 static bool reads_back(const abbe_agf_formula *formula, const abbe_dispersion *d) {
-  abbe_dispersion back;
-  return abbe_agf_formula_read(formula, &back, NULL) == ABBE_OK && back.model == d->model &&
-         back.count == d->count && memcmp(back.c, d->c, d->count * sizeof *d->c) == 0;
+  abbe_dispersion back = {0};
+  abbe_agf_formula_read(formula, &back, NULL);
+  return back.model == d->model && back.count == d->count &&
+         memcmp(back.c, d->c, d->count * sizeof *d->c) == 0;
 }
 
 abbe_result abbe_agf_formula_write(const abbe_dispersion *dispersion, double min_nm, double max_nm,

@@ -60,7 +60,7 @@ static void put_line(FILE *to, const char *text) {
 static void write_name(const abbe_material *m, abbe_summary *t, FILE *to) {
   bool changed = false;
   for (const char *c = m->name; *c != '\0'; c++) {
-    bool parts = *c == ' ' || *c == '\t' || (*c == ',' && c[1] == '\0');
+    bool parts = *c == ' ' || (*c == ',' && c[1] == '\0');
     changed = changed || parts;
     fputc(parts ? '_' : *c, to);
   }
@@ -228,9 +228,11 @@ static void put_share(double attenuation, double usual_mm, FILE *to) {
     found = printed_digits(attenuation, thickness_mm, &share) > 0;
   if (!found) found = find_exact(attenuation, thickness_mm = 10, &share);
   if (!found) found = find_thickness(attenuation, &thickness_mm, &share);
-  if (!found)
+  if (!found) {
     for (thickness_mm = 10; attenuation * thickness_mm / 1000 > 13 && thickness_mm > 1e-5;)
-      share = abbe_absorption_transmittance(attenuation, (thickness_mm /= 10) / 1000);
+      thickness_mm /= 10;
+    share = abbe_absorption_transmittance(attenuation, thickness_mm / 1000);
+  }
   put(to, share);
   put(to, abbe_number_tidy(thickness_mm));
 }

@@ -249,9 +249,9 @@ static abbe_result check_readable(const char *text, size_t size, size_t count, a
   abbe_error why = {0};
   if (size <= SURELY_READ) return ABBE_OK;
   abbe_result result = abbe_material_table_parse(text, size, "the table", &table, &why);
-  if (result == ABBE_OK) abbe_material_table_free(&table);
-  if (result == ABBE_OK || result == ABBE_NO_MEMORY)
-    return result == ABBE_OK ? result : abbe_error_set(error, result, "%s", why.text);
+  abbe_material_table_free(&table);
+  if (result == ABBE_OK) return ABBE_OK;
+  if (result == ABBE_NO_MEMORY) return abbe_error_set(error, result, "%s", why.text);
   return abbe_error_set(
       error, ABBE_INVALID_ARGUMENT,
       "%zu materials are %.3g MB of YAML, which no command would read again (%s); "

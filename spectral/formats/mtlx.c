@@ -52,7 +52,7 @@ typedef struct reading {
 } reading;
 
 static void stop(reading *r, abbe_result result) {
-  if (r->result == ABBE_OK) r->result = result;
+  r->result = result;
   XML_StopParser(r->parser, XML_FALSE);
 }
 

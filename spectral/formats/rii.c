@@ -64,8 +64,7 @@ static int numbers_at(reader *r, abbe_yaml_node node, double *out, int max) {
 
 static bool number_at(reader *r, abbe_yaml_node mapping, const char *key, double *out) {
   double value;
-  const bool there = abbe_yaml_is_mapping(r->yaml, mapping) &&
-                     numbers_at(r, abbe_yaml_get(r->yaml, mapping, key), &value, 1) == 1;
+  const bool there = numbers_at(r, abbe_yaml_get(r->yaml, mapping, key), &value, 1) == 1;
   if (there) *out = value;
   return there;
 }
@@ -131,8 +130,10 @@ static abbe_result read_formula(reader *r, abbe_yaml_node entry, int number) {
 
 /* ---- tables ---- */
 
+/* Of a table's lines: how many numbers each has, and which are taken. */
 typedef struct columns {
   bool n, k;
+  int numbers;
 } columns;
 
 static abbe_result take_row(reader *r, columns which, const double *row, size_t *odd) {
@@ -150,7 +151,7 @@ static abbe_result take_row(reader *r, columns which, const double *row, size_t 
 static abbe_result read_table(reader *r, abbe_yaml_node entry, columns which) {
   abbe_yaml_node node = abbe_yaml_get(r->yaml, entry, "data");
   const char *text = abbe_yaml_text(r->yaml, node);
-  int wanted = 1 + which.n + which.k;
+  const int wanted = which.numbers;
   if (text == NULL)
     return abbe_yaml_fail(r->yaml, node.id != 0 ? node : entry, r->error,
                           "a table wants its 'data', %d numbers a line", wanted);
@@ -232,8 +233,8 @@ static abbe_result read_entry(reader *r, abbe_yaml_node entry) {
     return ABBE_OK;
   }
   if (formula) return read_formula(r, entry, number);
-  if (n) return read_tabulated_n(r, entry, (columns){true, nk && r->k.count == 0});
-  if (k && r->k.count == 0) return read_table(r, entry, (columns){false, true});
+  if (n) return read_tabulated_n(r, entry, (columns){true, nk && r->k.count == 0, 2 + nk});
+  if (k && r->k.count == 0) return read_table(r, entry, (columns){false, true, 2});
   abbe_report_add(r->report, ABBE_NOTE_LOST, abbe_yaml_line(r->yaml, entry), r->m->name,
                   "data of type '%.40s' are not read", type);
   return ABBE_OK;

@@ -279,6 +279,8 @@ TEST(names_that_are_meant) {
       {"trace a.yaml -o a.exr --checkpint b", "did you mean '--checkpoint'?"},
       {"materials list --tabel t.yaml", "did you mean '--table'?"},
       {"materials nearest --pionts p.csv", "did you mean '--points'?"},
+      {"info", "which file?"},
+      {"info a.exr b.exr", "'b.exr' is one argument too many"},
       {"weights --cuont 3", "did you mean '--count'?"},
       {"plan a.yaml --jsno", "did you mean '--json'?"},
       {"materials list --table a.yaml --table b.yaml",

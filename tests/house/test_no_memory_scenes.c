@@ -4,9 +4,11 @@
 #include "tests/fontconfig.h"
 
 #include "colorimetry/illuminant.h"
-#include "colorimetry/image/display_ocio.h"
+#include "colorimetry/image/display_table.h"
 #include "colorimetry/image/exr.h"
+#include "colorimetry/image/picture_file.h"
 #include "colorimetry/image/png_file.h"
+#include "colorimetry/image/rgb_encoding.h"
 #include "colorimetry/plot/chart.h"
 #include "colorimetry/plot/material_chart.h"
 #include "colorimetry/weights.h"
@@ -50,6 +52,7 @@ static abbe_result exr(abbe_error *error) {
   abbe_image back = {0};
   const char *path = operation_path("picture.exr");
   abbe_result result = make_image(5, &image, error);
+  if (result == ABBE_OK) result = abbe_image_set_attribute(&image, "R.wavelength", "6e-7", error);
   for (int half = 0; half < 2 && result == ABBE_OK; half++) {
     if (half) image.data[0] = 1e6f; /* so that it is scaled */
     result = (half ? abbe_exr_write_half : abbe_exr_write)(path, &image, error);
@@ -61,12 +64,15 @@ static abbe_result exr(abbe_error *error) {
 }
 
 static abbe_result png(abbe_error *error) {
-  OWNED(abbe_image, image) = {0}, back = {0};
+  OWNED(abbe_image, image) = {0}, back = {0}, profile = {0};
   const char *path = operation_path("picture.png");
   abbe_result result = make_image(5, &image, error);
+  if (result == ABBE_OK) abbe_rgb_encoding_display_p3(image.xy, image.curve);
   if (result == ABBE_OK) result = abbe_png_write(path, &image, 16, error);
   if (result == ABBE_OK) result = abbe_png_read(path, &back, error);
   if (result == ABBE_OK) digest_image(&back);
+  if (result == ABBE_OK) result = abbe_png_read(FUZZ "corpus/png/profile.png", &profile, error);
+  if (result == ABBE_OK) digest_image(&profile);
   return result;
 }
 
@@ -125,6 +131,54 @@ static abbe_result display(abbe_error *error) {
   if (result == ABBE_OK) result = abbe_display_list(NULL, &list, error);
   if (result == ABBE_OK) digest_text(list);
   abbe_display_free(made);
+  return result;
+}
+
+/* A table of colours, for a picture that goes beyond it. */
+static abbe_display *shown;
+
+static abbe_result display_table(abbe_error *error) {
+  abbe_display_table *table = NULL;
+  OWNED(abbe_image, image) = {0};
+  abbe_result result = abbe_display_table_make(shown, &table, error);
+  if (result == ABBE_OK) result = make_image(2, &image, error);
+  if (result == ABBE_OK) image.data[0] = -1;
+  if (result == ABBE_OK) result = abbe_display_table_apply(table, &image, error);
+  if (result == ABBE_OK) digest_image(&image);
+  abbe_display_table_free(table);
+  return result;
+}
+
+/* ENVI, Radiance, and of OpenEXR a header and sums. */
+static abbe_result other_pictures(abbe_error *error) {
+  static const char head[] =
+      "ENVI\nsamples = 2\nlines = 2\nbands = 3\ninterleave = bip\n"
+      "data type = 1\nband names = {a, b, c}\nwavelength = {500, 550, 600}\n";
+  static const double weight[1][3] = {{1, 1, 1}}, one = 1;
+  static const size_t first = 0;
+  OWNED(abbe_image, cube) = {0}, light = {0}, header = {0}, sums = {0}, both = {0};
+  abbe_exr_reader *reader = NULL;
+  abbe_image_odd odd;
+  abbe_result result = abbe_file_write(operation_path("cube.hdr"), head, sizeof head - 1, error);
+  if (result == ABBE_OK)
+    result = abbe_file_write(operation_path("cube.raw"), "abcdefghijkl", 12, error);
+  if (result == ABBE_OK) result = abbe_picture_file_read(operation_path("cube.hdr"), &cube, error);
+  if (result == ABBE_OK) digest_image(&cube);
+  if (result == ABBE_OK)
+    result = abbe_picture_file_read(FUZZ "corpus/picture/new_runs.hdr", &light, error);
+  if (result == ABBE_OK) digest_image(&light);
+  if (result == ABBE_OK)
+    result = abbe_exr_open(FUZZ "corpus/exr/zip_half_lines.exr", &reader, error);
+  if (result == ABBE_OK) result = abbe_exr_read_header(reader, &header, error);
+  if (result == ABBE_OK)
+    result = abbe_image_make(header.width, header.height, 3, rgb, &sums, error);
+  if (result == ABBE_OK)
+    result = abbe_exr_read_sums(reader, 1, &first, weight, &one, &sums, &odd, error);
+  if (result == ABBE_OK) digest_image(&sums);
+  if (result == ABBE_OK) result = abbe_image_make(2, 2, 3, rgb, &both, error);
+  if (result == ABBE_OK) result = abbe_image_append(&both, &cube, error);
+  if (result == ABBE_OK) digest_image(&both);
+  abbe_exr_close(reader);
   return result;
 }
 
@@ -349,11 +403,18 @@ GROUP(operation_setup, operation_teardown);
 
 TEST(pictures) {
   static const operation list[] = {
-      {"EXR", exr, 0},         {"PNG", png, 0},
-      {"charts", chart, 0},    {"curves", material_charts, 300},
-      {"weights", weights, 0}, {"display", display, 0},
+      {"EXR", exr, 0},
+      {"PNG", png, 0},
+      {"charts", chart, 0},
+      {"curves", material_charts, 300},
+      {"weights", weights, 0},
+      {"display", display, 0},
+      {"display's table", display_table, 0},
+      {"other pictures", other_pictures, 0},
   };
+  OK(abbe_display_make(&(abbe_display_desc){0}, &shown, &error));
   operation_check_all(list, sizeof list / sizeof *list);
+  abbe_display_free(shown);
 }
 
 TEST(scenes) {

@@ -66,6 +66,7 @@ static abbe_result import(const char *path, abbe_error *error) {
 IMPORT(agf, "agf/maker.agf")
 IMPORT(rii, "rii/table.yml")
 IMPORT(csv, "csv/plain.csv")
+IMPORT(mtlx, "mtlx/shaders.mtlx")
 
 static abbe_result write_as(int kind, const abbe_material_table *table, FILE *to,
                             abbe_error *error) {
@@ -81,6 +82,9 @@ static abbe_result write_as(int kind, const abbe_material_table *table, FILE *to
   case 2:
     result = abbe_rii_write(&table->material[0], to, &report, error);
     break;
+  case 3:
+    result = abbe_mtlx_write(table, to, &report, error);
+    break;
   default:
     result = abbe_csv_write(&table->material[2], NULL, to, &report, error);
   }
@@ -90,7 +94,7 @@ static abbe_result write_as(int kind, const abbe_material_table *table, FILE *to
 static abbe_result write_tables(abbe_error *error) {
   OWNED(abbe_material_table, table) = {0};
   abbe_result result = parse(small, &table, error);
-  for (int kind = 0; kind < 4 && result == ABBE_OK; kind++) {
+  for (int kind = 0; kind < 5 && result == ABBE_OK; kind++) {
     FREED char *text = NULL;
     size_t size = 0;
     FILE *to = open_memstream(&text, &size);
@@ -129,6 +133,30 @@ static abbe_result import_folder(abbe_error *error) {
   OWNED(abbe_material_table, table) = {0};
   OWNED(abbe_report, report) = {0};
   const abbe_result result = abbe_import_batch_run(&batch, &table, &report, error);
+  if (result == ABBE_OK) digest_table(&table);
+  return result;
+}
+
+/* Glasses of one name, of which two files have one each; with remarks, sources, transmittances. */
+static abbe_result import_two(abbe_error *error) {
+  static const char agf[] =
+      "CC maker\nNM G 2 0 1.5 60\nGC a remark; source: me\nCD 1.2 0.01\nLD 0.3 2\n"
+      "IT 0.4 0.9 10\nIT 0.5 0.95 10\n";
+  static const char rii[] =
+      "COMMENTS: c\nDATA:\n- {type: tabulated nk, data: \"0.4 0.2 3\\n0.5 0.2 3\\n0.6 "
+      "0.2 3\\n0.7 0.2 3\"}\n";
+  static const char *const names[] = {"a.agf", "b.agf", "G.yml", "p.csv"};
+  OWNED(abbe_material_table, table) = {0};
+  OWNED(abbe_report, report) = {0};
+  const char *paths[4];
+  abbe_result result = ABBE_OK;
+  for (int i = 0; i < 4; i++) paths[i] = operation_path(names[i]);
+  for (int i = 0; i < 2 && result == ABBE_OK; i++)
+    result = abbe_file_write(paths[i], agf, sizeof agf - 1, error);
+  if (result == ABBE_OK) result = abbe_file_write(paths[2], rii, sizeof rii - 1, error);
+  if (result == ABBE_OK) result = abbe_file_write(paths[3], "400,1.5\n500,1.4\n", 16, error);
+  const abbe_import_batch batch = {.path = paths, .count = 4};
+  if (result == ABBE_OK) result = abbe_import_batch_run(&batch, &table, &report, error);
   if (result == ABBE_OK) digest_table(&table);
   return result;
 }
@@ -234,7 +262,9 @@ TEST(tables) {
       {"import AGF", import_agf, 400},
       {"import RII", import_rii, 400},
       {"import CSV", import_csv, 400},
+      {"import MaterialX", import_mtlx, 0},
       {"import a folder", import_folder, 200},
+      {"import two makers", import_two, 0},
       {"store a table", store_table, 80},
       {"write tables", write_tables, 300},
       {"examine a table", examine, 0},

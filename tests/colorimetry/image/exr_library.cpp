@@ -1,6 +1,7 @@
 #include "tests/colorimetry/image/exr_library.h"
 
 #include <ImfChannelList.h>
+#include <ImfDoubleAttribute.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -10,6 +11,7 @@
 #include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
+#include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 #include <ImfTiledOutputFile.h>
 #include <ImfTiledOutputPart.h>
@@ -105,15 +107,17 @@ struct content {
     header.lineOrder() = Imf::LineOrder(f.line_order);
     if (f.tile[0] > 0)
       header.setTileDescription(
-          Imf::TileDescription(unsigned(f.tile[0]), unsigned(f.tile[1]),
-                               f.levels ? Imf::MIPMAP_LEVELS : Imf::ONE_LEVEL));
+          Imf::TileDescription(unsigned(f.tile[0]), unsigned(f.tile[1]), Imf::LevelMode(f.levels)));
     if (f.part != nullptr) {
       header.setName(f.part);
       header.setType(f.tile[0] > 0 ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
     }
+    if (f.id != nullptr) header.insert("colorInteropID", Imf::StringAttribute(f.id));
     for (int c = 0; c < f.channels; c++) {
-      if (f.metres[c] != 0)
-        header.insert(std::string(f.name[c]) + ".wavelength", Imf::FloatAttribute(f.metres[c]));
+      const std::string name = std::string(f.name[c]) + ".wavelength";
+      if (f.metres[c] != 0 && c % 2 == 0) header.insert(name, Imf::FloatAttribute(f.metres[c]));
+      if (f.metres[c] != 0 && c % 2 == 1)
+        header.insert(name, Imf::DoubleAttribute(double(f.metres[c])));
       const int sampling = f.sampling > 1 && c == f.channels - 1 ? f.sampling : 1;
       header.channels().insert(
           f.name[c], Imf::Channel(Imf::PixelType(f.type[c]), sampling, sampling, c % 2 == 1));
@@ -133,8 +137,10 @@ template <typename File> void write_lines(File &file, const content &c) {
 /* Each lesser level shows the corner of the full one: no matter. */
 template <typename File> void write_tiles(File &file, const content &c) {
   file.setFrameBuffer(c.frame);
-  for (int level = 0; level < file.numLevels(); level++)
-    file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
+  for (int x = 0; x < file.numXLevels(); x++)
+    for (int y = 0; y < file.numYLevels(); y++)
+      if (file.isValidLevel(x, y))
+        file.writeTiles(0, file.numXTiles(x) - 1, 0, file.numYTiles(y) - 1, x, y);
 }
 
 void write(const char *path, const exr_library_file *f, int parts) {

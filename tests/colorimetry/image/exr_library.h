@@ -22,11 +22,12 @@ typedef struct exr_library_file {
   int type[EXR_LIBRARY_MAX_CHANNELS]; /* 0 whole numbers, 1 half, 2 float */
   int sampling;                       /* of the last channel, both ways; 0: 1 */
   int codec, line_order;
-  int tile[2];                            /* 0: in scan lines */
-  bool levels;                            /* a mipmap of tiles */
-  bool flat;                              /* one and the same value everywhere */
-  const char *part;                       /* its name, of a file of several parts */
-  float metres[EXR_LIBRARY_MAX_CHANNELS]; /* CHANNEL.wavelength, Ocean's; 0: none */
+  int tile[2];           /* 0: in scan lines */
+  int levels;            /* of tiles: 0 one, 1 a mipmap, 2 a ripmap */
+  bool flat;             /* one and the same value everywhere */
+  const char *part, *id; /* name and colorInteropID, of a file of several parts */
+  /* CHANNEL.wavelength, Ocean's, as a float, of odd channels as a double; 0: none */
+  float metres[EXR_LIBRARY_MAX_CHANNELS];
 } exr_library_file;
 
 /* Writes f to path, filled with values that differ from sample to sample. On failure false, and

@@ -142,6 +142,9 @@ TEST(gamut_and_white) {
   show(&desc, lamp);
   near(lamp, (double[]){srgb_encode(0.5), srgb_encode(0.5), srgb_encode(0.5)}, 1e-4, "white");
   must_fail(&(abbe_display_desc){.white = {0.9, 0.9}}, ABBE_INVALID_ARGUMENT, "0.9, 0.9");
+  must_fail(&(abbe_display_desc){.white = {0, 0.3}}, ABBE_INVALID_ARGUMENT, "0, 0.3");
+  must_fail(&(abbe_display_desc){.white = {-0.1, 0.3}}, ABBE_INVALID_ARGUMENT, "-0.1, 0.3");
+  must_fail(&(abbe_display_desc){.white = {0.3, 0.005}}, ABBE_INVALID_ARGUMENT, "0.3, 0.005");
   must_fail(&(abbe_display_desc){.gamut = ABBE_GAMUT_MAP_CLIP, .view = "Raw"}, ABBE_COLOUR,
             "the display's primaries");
 }
@@ -392,6 +395,31 @@ TEST(what_other_configurations_tell) {
   unlink(path);
 }
 
+/* Without a space that Abbe knows neither a white nor a map can be: data and a display's space of
+ * that name are none, nor is sRGB where the configuration has no light to come from. */
+TEST(spaces_that_anchor_nothing) {
+  static const char path[] = "/tmp/abbe_test_anchor.ocio";
+  static const char *const spaces[] = {
+      "  - !<ColorSpace> {name: a}\n  - !<ColorSpace> {name: ACEScg, isdata: true}\n",
+      "  - !<ColorSpace> {name: a}\n  - !<ColorSpace> {name: sRGB}\n",
+      "  - !<ColorSpace> {name: a, isdata: true}\n  - !<ColorSpace> {name: sRGB}\n",
+      "  - !<ColorSpace> {name: a}\ndisplay_colorspaces:\n  - !<ColorSpace> {name: ACEScg}\n"
+      "view_transforms:\n  - !<ViewTransform>\n    name: t\n"
+      "    from_scene_reference: !<MatrixTransform> {}\n"};
+  for (int i = 0; i < 4; i++) {
+    const char *text = printed("ocio_profile_version: 2\nroles: {scene_linear: a}\n"
+                               "file_rules:\n  - !<Rule> {name: Default, colorspace: a}\n"
+                               "displays:\n  d:\n    - !<View> {name: v, colorspace: a}\n"
+                               "colorspaces:\n%s",
+                               spaces[i]);
+    OK(abbe_file_write(path, text, strlen(text), &error));
+    must_fail(&(abbe_display_desc){.config = path, .white = {0.3127, 0.329}}, ABBE_COLOUR,
+              "it has no role aces_interchange");
+    abbe_display_free(make(&(abbe_display_desc){.config = path}));
+  }
+  unlink(path);
+}
+
 /* A profile of Adobe RGB (1998) by Little CMS: its primaries, D65 and the power 563/256. */
 TEST(a_monitors_profile_is_a_display) {
   const char *path = printed("/tmp/abbe_test_monitor_%ld.icc", (long)getpid());
@@ -413,6 +441,15 @@ TEST(a_monitors_profile_is_a_display) {
   for (int i = 0; i < 9; i++)
     assert_near(pow((double)image.data[i], power), linear[i / 3][i % 3], 1e-4);
   for (int i = 0; i < 8; i++) assert_near(image.xy[i], xy[i], 1e-3);
+  const char *other = printed("/tmp/abbe_test_monitor_%ld.icm", (long)getpid());
+  assert_int_equal(rename(path, other), 0); /* is a profile by that ending too */
+  abbe_display_free(make(&(abbe_display_desc){.display = other, .view = "Plain"}));
+  assert_int_equal(rename(other, path), 0);
+  image.channels = 2;
+  assert_int_equal(abbe_display_apply(display, &image, NULL), ABBE_INVALID_ARGUMENT);
+  image.channels = 3;
+  assert_int_equal(abbe_display_apply(display, &(abbe_image){.channels = 3}, NULL),
+                   ABBE_INVALID_ARGUMENT);
   must_fail(&(abbe_display_desc){.display = path, .view = "Plane"}, ABBE_COLOUR,
             "Looking, Plain, Raw");
   OK(abbe_file_write(path, "none", 4, &error));

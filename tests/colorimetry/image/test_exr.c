@@ -113,13 +113,26 @@ TEST(units_that_are_none) {
     if (memcmp(data + i, "7.62939453125e-06", 17) == 0) unit = data + i;
   assert_non_null(unit);
   static const char *const wrong[] = {"7.62939453125e-05", "inf              ", "-7.6293945313e-06",
-                                      "0.000000000000000", "something-or-othe"};
-  for (int i = 0; i < 5; i++) {
+                                      "0.000000000000000", "something-or-othe", "0.25 and the rest",
+                                      "1e999            ", "1e99999999999999"};
+  for (int i = 0; i < 8; i++) {
     memcpy(unit, wrong[i], 17);
     OK(abbe_file_write(path, data, size, &error));
     REFUSED(ABBE_PARSE, "abbe:stored_unit", abbe_exr_read(path, &back, &error));
     assert_null(back.data);
   }
+}
+
+/* Black needs no unit. */
+TEST(black_halves) {
+  static const char *const names[] = {"Y"};
+  MADE(abbe_image, image, abbe_image_make(1, 1, 1, names, &image, &error));
+  OK(abbe_exr_write_half(path, &image, &error));
+  MADE(abbe_image, back, abbe_exr_read(path, &back, &error));
+  assert_true(back.data[0] == 0);
+  image.channels = 0;
+  REFUSED(ABBE_INVALID_ARGUMENT, "is empty", abbe_exr_write(path, &image, &error));
+  image.channels = 1;
 }
 
 TEST(what_cannot_be_written) {

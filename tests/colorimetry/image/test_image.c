@@ -63,6 +63,9 @@ TEST(places) {
   OK(abbe_image_check_place(&a, "a", &b, "b", &error));
   b.data_window.x0 = 1; /* where there is data does not matter */
   OK(abbe_image_check_place(&a, "a", &b, "b", &error));
+  b.display_window = (abbe_image_window){0, 3, 2, 4};
+  REFUSED(ABBE_INVALID_ARGUMENT, "b (0, 3) to (2, 4)",
+          abbe_image_check_place(&a, "a", &b, "b", &error));
   b.display_window = (abbe_image_window){-7, 0, -5, 1};
   REFUSED(ABBE_INVALID_ARGUMENT, "a shows (0, 0) to (2, 1) and b (-7, 0) to (-5, 1)",
           abbe_image_check_place(&a, "a", &b, "b", &error));
@@ -74,6 +77,7 @@ TEST(names_are_needed) {
   abbe_image image = {0};
   assert_int_equal(abbe_image_make(1, 1, 3, bad, &image, NULL), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_image_make(1, 1, 3, none, &image, NULL), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_image_make(1, 1, 3, NULL, &image, NULL), ABBE_INVALID_ARGUMENT);
 }
 
 TEST(attributes) {
@@ -86,6 +90,8 @@ TEST(attributes) {
   assert_string_equal(abbe_image_attribute_text(&image, "abbe:space"), "acescg");
   assert_string_equal(abbe_image_attribute_text(&image, "comment"), "");
   assert_int_equal(abbe_image_set_attribute(&image, "", "x", NULL), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_image_set_attribute(&image, NULL, "x", NULL), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_image_set_attribute(&image, "a", NULL, NULL), ABBE_INVALID_ARGUMENT);
 }
 
 TEST(append) {
@@ -100,6 +106,17 @@ TEST(append) {
   OK(abbe_image_set_attribute(&other, "a", "its", &error));
   OK(abbe_image_set_attribute(&other, "b", "its", &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "1 x 2", abbe_image_append(&image, &twice, &error));
+  twice.width = 2;
+  REFUSED(ABBE_INVALID_ARGUMENT, "2 x 2", abbe_image_append(&image, &twice, &error));
+  twice.width = 1;
+  OWNED(abbe_image, full) = {0}, one = {0};
+  OK(abbe_image_make(2, 1, 1, rgb, &full, &error));
+  OK(abbe_image_make(2, 1, 1, more, &one, &error));
+  for (int i = 0; i < ABBE_IMAGE_MAX_ATTRIBUTES; i++)
+    OK(abbe_image_set_attribute(&full, printed("a%d", i), "", &error));
+  OK(abbe_image_set_attribute(&one, "one more", "", &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "one more", abbe_image_append(&full, &one, &error));
+  assert_int_equal(full.channels, 1);
   OK(abbe_image_append(&image, &other, &error));
   assert_int_equal(image.channels, 5);
   assert_string_equal(image.channel[3], "S0.500nm");

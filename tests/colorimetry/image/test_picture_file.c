@@ -109,6 +109,12 @@ TEST(units_and_scales) {
       {LIGHT "data gain values = {2,1,1,1,1}\ndata offset values = {0.5,0,0,0,0}\n",
        "S0.500,000000nm", 82.5},
       {"band names = {red edge, b, c}\n", "red edge", 41},
+      {"band names = {, b, c}\n", "band 1", 41},
+      {"wavelength units = unknown\nwavelength = {.5,.6,.7,.8,.9}\n", "S0.500,000000nm", 41},
+      {"wavelength units = Index\nwavelength = {500,6,7,8,9}\n", "band 1", 41},
+      {"wavelength = {}\nno value\n = 3\nnote =\n\n", "band 1", 41},
+      {"a key that is far longer than any that is known, so that it is cut at some place = 3\n",
+       "band 1", 41},
       {"", "band 1", 41}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     const char *header =
@@ -154,6 +160,19 @@ TEST(what_a_header_says_wrongly_is_refused_by_its_line) {
       {"samples = -4\n", "cube.hdr:2: 'samples' is '-4'", ABBE_PARSE},
       {"samples = 1e9\nlines = 1e9\nbands = 5\ninterleave = bip\ndata type = 4\n", "32768 a side",
        ABBE_INVALID_ARGUMENT},
+      {"samples = 1e999\n", "cube.hdr:2: 'samples' is '1e999'", ABBE_PARSE},
+      {"samples = 4x\n", "cube.hdr:2: 'samples' is '4x'", ABBE_PARSE},
+      {"samples = four\n", "cube.hdr:2: 'samples' is 'four'", ABBE_PARSE},
+      {"samples = 4.5\n", "no line 'samples = ' with a number from 1 on", ABBE_PARSE},
+      {"samples = 4\nlines = 1e9\nbands = 5\n", "4 x 1000000000 pixels", ABBE_INVALID_ARGUMENT},
+      {"samples = 4\nlines = 3\nbands = 1e9\n", "1000000000 bands", ABBE_INVALID_ARGUMENT},
+      {SIZES "interleave = bip\n", "data type is nan", ABBE_UNSUPPORTED},
+      {SIZES "interleave = bip\ndata type = 16\n", "data type is 16", ABBE_UNSUPPORTED},
+      {SIZES "wavelength = {1,2,3e,4,5}\n", "number 3 of 'wavelength' is '3e'", ABBE_PARSE},
+      {SIZES "wavelength = {1,2,1e999,4,5}\n", "number 3 of 'wavelength' is '1e999'", ABBE_PARSE},
+      {SIZES "interleave = bip\ndata type = 4\nwavelength = {500,550,1e10,600,650}\n"
+             "wavelength units = nm\n",
+       "cube.hdr:7: wavelength 3 is 1e+10 nm", ABBE_PARSE},
       {"description = {never\nends\n", "cube.hdr:2: its list has no '}'", ABBE_PARSE}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     abbe_image image;
@@ -172,16 +191,61 @@ TEST(what_a_header_says_wrongly_is_refused_by_its_line) {
           abbe_picture_file_read(printed("%s/cube.hdr", folder), &image, &error));
 }
 
+/* Names and numbers of more bands than a picture has channels; a header that is called otherwise.
+ */
+TEST(lists_have_a_most) {
+  static char text[10 * (ABBE_IMAGE_MAX_CHANNELS + 20)];
+  abbe_image image;
+  for (int list = 0; list < 2; list++) {
+    size_t used = (size_t)sprintf(text, "ENVI\n" SIZES "interleave = bip\ndata type = 12\n%s = {",
+                                  list == 0 ? "band names" : "wavelength");
+    for (int i = 0; i <= ABBE_IMAGE_MAX_CHANNELS; i++)
+      used += (size_t)sprintf(text + used, "%d, ", 400 + i);
+    strcpy(text + used, "}\n");
+    const char *path = write_cube(text, 12, false, "bip", 0);
+    if (list == 1)
+      REFUSED(ABBE_UNSUPPORTED, "'wavelength' has more than", abbe_envi_read(path, &image, &error));
+    else
+      OK(abbe_envi_read(path, &image, &error));
+    if (list == 0) assert_string_equal(image.channel[4], "404");
+    if (list == 0) abbe_image_free(&image);
+  }
+  for (int i = 0; i < 2; i++) {
+    const char *other = printed("%s/%s", folder, i == 0 ? "a.head" : "cube.hdr");
+    OK(abbe_file_write(other, text, 5, &error));
+    REFUSED(ABBE_PARSE, "no line 'samples = '", abbe_envi_read(other, &image, &error));
+  }
+  const char *header = "ENVI\n" SIZES "interleave = bip\ndata type = 12\n";
+  OK(abbe_file_write(printed("%s/a.head", folder), header, strlen(header), &error));
+  REFUSED(ABBE_NOT_FOUND, "there is no cube beside this header",
+          abbe_envi_read(printed("%s/a.head", folder), &image, &error));
+  assert_int_equal(chdir(folder), 0);
+  OK(abbe_file_write("h", header, strlen(header), &error));
+  REFUSED(ABBE_NOT_FOUND, "there is no cube", abbe_envi_read("h", &image, &error));
+  REFUSED(ABBE_IO, "nothing.hdr", abbe_envi_read("nothing.hdr", &image, &error));
+  REFUSED(ABBE_IO, "nothing.hdr", abbe_picture_file_read("nothing.hdr", &image, &error));
+}
+
+/* More attributes than a picture may have: the first are kept. */
+TEST(attributes_have_a_most) {
+  static char text[40 * (ABBE_IMAGE_MAX_ATTRIBUTES + 4)];
+  size_t used = (size_t)sprintf(text, "ENVI\n" SIZES "interleave = bip\ndata type = 12\n");
+  for (int i = 0; i <= ABBE_IMAGE_MAX_ATTRIBUTES; i++)
+    used += (size_t)sprintf(text + used, "note %d = %d\n", i, i);
+  MADE(abbe_image, image, abbe_envi_read(write_cube(text, 12, false, "bip", 0), &image, &error));
+  assert_int_equal(image.attribute_count, ABBE_IMAGE_MAX_ATTRIBUTES);
+  assert_string_equal(abbe_image_attribute_text(&image, "note 7"), "7");
+}
+
 /* Other files are taken for OpenEXR, whose sentences are known. */
 TEST(kinds_are_told_by_their_first_bytes) {
   static const struct {
     const char *bytes;
     abbe_picture_file_kind kind;
-  } cases[] = {{"ENVI\n", ABBE_PICTURE_FILE_ENVI},
-               {"ENVIRONMENT", ABBE_PICTURE_FILE_OTHER},
-               {"#?RADIANCE\n", ABBE_PICTURE_FILE_RADIANCE},
-               {"\x76\x2f\x31\x01", ABBE_PICTURE_FILE_EXR},
-               {"", ABBE_PICTURE_FILE_OTHER}};
+  } cases[] = {
+      {"ENVI\n", ABBE_PICTURE_FILE_ENVI},          {"ENVIRONMENT", ABBE_PICTURE_FILE_OTHER},
+      {"ENVOY\n", ABBE_PICTURE_FILE_OTHER},        {"#?RADIANCE\n", ABBE_PICTURE_FILE_RADIANCE},
+      {"\x76\x2f\x31\x01", ABBE_PICTURE_FILE_EXR}, {"", ABBE_PICTURE_FILE_OTHER}};
   const char *path = printed("%s/kind", folder);
   abbe_image image;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -191,4 +255,8 @@ TEST(kinds_are_told_by_their_first_bytes) {
     assert_int_equal(kind, cases[i].kind);
   }
   REFUSED(ABBE_PARSE, "OpenEXR", abbe_picture_file_read(path, &image, &error));
+  OK(abbe_file_write(path, "#?RADIANCE\n\n-Y 1 +X 1\n\x80\x80\x80\x80", 27, &error));
+  OK(abbe_picture_file_read(path, &image, &error));
+  assert_near(image.data[0], 0.5, 0);
+  abbe_image_free(&image);
 }

@@ -77,6 +77,16 @@ TEST(without_an_id_chromaticities_are_meant_and_else_rec709) {
   }
 }
 
+TEST(an_observer_that_is_not_known_is_refused) {
+  OWNED(abbe_image, image) = picture(NULL, rec709);
+  abbe_picture_space space;
+  OK(abbe_image_set_attribute(&image, "abbe:observer", "me", &error));
+  for (int xyz = 0; xyz < 2; xyz++)
+    REFUSED(ABBE_COLOUR, "abbe:observer is 'me'",
+            abbe_picture_space_find(&image, xyz, "x.exr", &space, &error));
+  assert_null(abbe_picture_space_id(&image));
+}
+
 static void check_colour(abbe_colour_map map, double t, double r, double g, double b,
                          double tolerance) {
   double rgb[3];

@@ -53,6 +53,26 @@ TEST(what_cannot_be_written) {
   REFUSED(ABBE_INVALID_ARGUMENT, "12", abbe_png_write(path, &image, 12, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_png_write(path, &empty, 8, &error));
   REFUSED(ABBE_IO, "", abbe_png_write("/no/such/folder/a.png", &image, 8, &error));
+  image.channels = 0;
+  REFUSED(ABBE_INVALID_ARGUMENT, "is empty", abbe_png_write(path, &image, 8, &error));
+  image.channels = 2;
+  image.transfer = 16;
+  REFUSED(ABBE_INVALID_ARGUMENT, "PQ and HLG", abbe_png_write(path, &image, 16, &error));
+  image.channels = 3;
+}
+
+/* A fourth channel that is no alpha is left out. */
+TEST(other_channels_are_left_out) {
+  static const char *const depth[] = {"R", "G", "B", "Z"};
+  MADE(abbe_image, image, abbe_image_make(1, 1, 4, depth, &image, &error));
+  FREED char *data = NULL;
+  size_t size = 0;
+  image.data[0] = 1;
+  OK(abbe_png_write(path, &image, 8, &error));
+  OK(abbe_file_read(path, 1 << 20, &data, &size, &error));
+  assert_int_equal(data[25], PNG_COLOR_TYPE_RGB); /* IHDR's kind of colour */
+  MADE(abbe_image, back, abbe_png_read(path, &back, &error));
+  assert_true(back.data[0] == 1 && back.data[1] == 0);
 }
 
 TEST(a_full_disk_leaves_the_old_file) {
@@ -292,6 +312,10 @@ static void say_linear(png_structp png, png_infop info) {
 static void say_p3_by_chunks(png_structp png, png_infop info) {
   png_set_cHRM(png, info, 0.3127, 0.329, 0.68, 0.32, 0.265, 0.69, 0.15, 0.06);
 }
+static void say_p3_and_gamma(png_structp png, png_infop info) {
+  png_set_gAMA_fixed(png, info, 45455);
+  say_p3_by_chunks(png, info);
+}
 static void say_p3_by_profile(png_structp png, png_infop info) {
   double xy[8], curve[5];
   FREED void *icc = NULL;
@@ -300,9 +324,10 @@ static void say_p3_by_profile(png_structp png, png_infop info) {
   OK(abbe_rgb_encoding_profile(xy, curve, &icc, &size, &error));
   png_set_iCCP(png, info, "p3", 0, icc, (png_uint_32)size);
 }
+static png_byte matrix = 0, full = 1, cicp_size = 4;
 static void say_cicp(png_structp png, png_infop info, int primaries, int transfer) {
-  png_unknown_chunk chunk = {.name = "cICP", .size = 4, .location = PNG_HAVE_IHDR};
-  png_byte code[4] = {(png_byte)primaries, (png_byte)transfer, 0, 1};
+  png_unknown_chunk chunk = {.name = "cICP", .size = cicp_size, .location = PNG_HAVE_IHDR};
+  png_byte code[4] = {(png_byte)primaries, (png_byte)transfer, matrix, full};
   chunk.data = code;
   png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_ALWAYS, NULL, 0);
   png_set_unknown_chunks(png, info, &chunk, 1);
@@ -313,6 +338,9 @@ static void say_p3_by_cicp(png_structp png, png_infop info) {
 }
 static void say_rec709_by_cicp(png_structp png, png_infop info) {
   say_cicp(png, info, 1, 1);
+}
+static void say_nobody_knows(png_structp png, png_infop info) {
+  say_cicp(png, info, 2, 13);
 }
 static void say_pq(png_structp png, png_infop info) {
   say_cicp(png, info, 9, 16);
@@ -329,6 +357,8 @@ TEST(the_colour_is_heeded) {
                {say_old_srgb, {0.2, 0.5, 0.7}, {0.2, 0.5, 0.7}},
                {say_linear, {0.21404, 0.5, 1}, {0.5, 0.73536, 1}},
                {say_p3_by_chunks, {0.91749, 0.20029, 0.13856}, {1, 0, 0}},
+               /* sqrt-like curves part there: 0.2159 is 0.5^2.2, of grey nothing but the curve */
+               {say_p3_and_gamma, {0.5, 0.5, 0.5}, {0.5028, 0.5028, 0.5028}},
                {say_p3_by_profile, {0.91749, 0.20029, 0.13856}, {1, 0, 0}},
                {say_p3_by_cicp, {0.91749, 0.20029, 0.13856}, {1, 0, 0}},
                {say_rec709_by_cicp, {0.5, 0.5, 0.5}, {0.54681, 0.54681, 0.54681}}};
@@ -344,9 +374,74 @@ TEST(the_colour_is_heeded) {
     assert_true(abbe_rgb_encoding_is_srgb(image.xy, image.curve));
   }
   abbe_image image = {0};
-  write_stating(cases[0].in, say_pq);
-  REFUSED(ABBE_UNSUPPORTED, "cICP", abbe_png_read(path, &image, &error));
-  assert_null(image.data);
+  static const png_byte odd[][3] = {{0, 1, 4}, {1, 1, 4}, {0, 0, 4}, {0, 1, 3}};
+  for (size_t i = 0; i < 5; i++) {
+    matrix = i < 4 ? odd[i][0] : 0;
+    full = i < 4 ? odd[i][1] : 1;
+    cicp_size = i < 4 ? odd[i][2] : 4;
+    write_stating(cases[0].in, i == 0 ? say_pq : i < 4 ? say_p3_by_cicp : say_nobody_knows);
+    REFUSED(ABBE_UNSUPPORTED, "cICP", abbe_png_read(path, &image, &error));
+    assert_null(image.data);
+  }
+}
+
+/* ---- the text that Abbe adds ---- */
+
+static const unsigned char signature[] = "\x89PNG\r\n\x1a\n";
+
+/* A file of so many chunks of a kind and length, each of zeros, then one with a text of the key. */
+static void write_chunks(size_t chunks, const char *kind, unsigned length, const char *key) {
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
+  fwrite(signature, 8, 1, file);
+  for (size_t i = 0; i < chunks; i++) {
+    fprintf(file, "%c%c%c%c%s", length >> 24, length >> 16 & 255, length >> 8 & 255, length & 255,
+            kind);
+    for (size_t k = 0; k < (length & 0xffff) + 4; k++) fputc(0, file);
+  }
+  if (key != NULL)
+    fprintf(file, "%c%c%c%ctEXt%s%cwords....", 0, 0, 0, (int)strlen(key) + 6, key, 0);
+  fclose(file);
+}
+
+TEST(the_text_is_found) {
+  static const struct {
+    size_t chunks;
+    const char *kind;
+    unsigned length;
+    const char *key, *text;
+  } rows[] = {
+      {0, "", 0, ABBE_PNG_TEXT, "words"},        {1, "pHYs", 9, ABBE_PNG_TEXT, "words"},
+      {255, "pHYs", 0, ABBE_PNG_TEXT, "words"},  {256, "pHYs", 0, ABBE_PNG_TEXT, NULL},
+      {1, "tEXt", 2, ABBE_PNG_TEXT, "words"},    {1, "tEXt", 60, ABBE_PNG_TEXT, "words"},
+      {1, "IDAT", 9, ABBE_PNG_TEXT, NULL},       {1, "pHYs", 0x80000009, ABBE_PNG_TEXT, NULL},
+      {1, "tEXt", 0x10001, ABBE_PNG_TEXT, NULL}, {2, "pHYs", 3, NULL, NULL}};
+  FREED char *text = NULL;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    write_chunks(rows[i].chunks, rows[i].kind, rows[i].length, rows[i].key);
+    OK(abbe_png_read_text(path, &text, &error));
+    if ((text == NULL) != (rows[i].text == NULL)) fail_msg("row %zu: %s", i, text);
+    if (text != NULL) assert_string_equal(text, rows[i].text);
+    free(text);
+    text = NULL;
+  }
+  write_chunks(1, "tEXt", 60, NULL);
+  assert_int_equal(truncate(path, 40), 0); /* within it */
+  OK(abbe_png_read_text(path, &text, &error));
+  assert_null(text);
+  OWNED(abbe_image, image) = gradient(2, 2, 3);
+  OK(abbe_image_set_attribute(&image, ABBE_PNG_TEXT, "scene: 3", &error));
+  OK(abbe_png_write(path, &image, 8, &error));
+  OK(abbe_png_read_text(path, &text, &error));
+  assert_string_equal(text, "scene: 3");
+  free(text);
+  REFUSED(ABBE_IO, "/no/such.png", abbe_png_read_text("/no/such.png", &text, &error));
+  static const char *const none[] = {"", "a text that is long enough"};
+  for (int i = 0; i < 2; i++) {
+    OK(abbe_file_write(path, none[i], strlen(none[i]), &error));
+    FREED char *nothing = NULL;
+    REFUSED(ABBE_PARSE, "it is no PNG", abbe_png_read_text(path, &nothing, &error));
+  }
 }
 
 static long peak_kilobytes(void) {

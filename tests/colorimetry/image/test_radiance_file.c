@@ -149,6 +149,19 @@ TEST(what_is_refused) {
       {HEAD "COLORCORR=1 2\n\n-Y 1 +X 1\nabcd", 0, ABBE_PARSE, "COLORCORR"},
       {HEAD "PRIMARIES=1 2\n\n-Y 1 +X 1\nabcd", 0, ABBE_PARSE, "PRIMARIES"},
       {"#?RADIANCE\nFORMAT=float\n\n-Y 1 +X 1\nabcd", 0, ABBE_UNSUPPORTED, "FORMAT"},
+      {HEAD "EXPOSURE=1e999\n\n-Y 1 +X 1\nabcd", 0, ABBE_PARSE, "EXPOSURE is no number"},
+      {HEAD "EXPOSURE=1e-31\n\n-Y 1 +X 1\nabcd", 0, ABBE_PARSE, "not above 0, or too large"},
+      {HEAD "EXPOSURE=1e31\n\n-Y 1 +X 1\nabcd", 0, ABBE_PARSE, "not above 0, or too large"},
+      {HEAD "COLORCORR=1 0 1\n\n-Y 1 +X 1\nabcd", 0, ABBE_PARSE, "COLORCORR"},
+      {HEAD "\n-Z 1 +X 1\nabcd", 0, ABBE_PARSE, "size"},
+      {HEAD "\n-Y : +X 1\nabcd", 0, ABBE_PARSE, "size"},
+      {HEAD "\n-Y 00000001 +X 1\nabcd", 0, ABBE_PARSE, "size"},
+      {HEAD "\n-Y 1 +X 4\nabcd\x01\x01\x01\0\x01\x01\x01\0\x01\x01\x01\0\x01\x01\x01\0"
+            "\x01\x01\x01\0",
+       sizeof HEAD - 1 + 11 + 24, ABBE_PARSE, "a run is too long"},
+      {HEAD "\n-Y 1 +X 8\n\x02\x02", 0, ABBE_PARSE, "cut off"},
+      {HEAD "\n-Y 1 +X 8\n\x02\x02\0\x08\x88", sizeof HEAD - 1 + 11 + 5, ABBE_PARSE, "cut off"},
+      {HEAD "\n-Y 1 +X 8\n\x02\x02\0\x08\x08\x01", sizeof HEAD - 1 + 11 + 6, ABBE_PARSE, "cut off"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     abbe_image image;
@@ -163,8 +176,34 @@ TEST(what_is_refused) {
   }
 }
 
+/* What looks like a repetition, or like a line in runs, and is neither. */
+TEST(pixels_that_look_like_codes) {
+  static const uint8_t three[3][4] = {{1, 2, 1, 136}, {1, 1, 2, 136}, {1, 3, 3, 136}};
+  OWNED(abbe_image, image) = read_pixels(HEAD "\n-Y 1 +X 3\n", three, sizeof three);
+  check_pixel(&image, 0, 0, 1, 2, 1);
+  check_pixel(&image, 1, 0, 1, 1, 2);
+  for (int k = 1; k < 3; k++) {
+    uint8_t line[8][4] = {{2, 2, 2, 136}};
+    line[0][k] = k == 1 ? 3 : 128;
+    abbe_image_free(&image);
+    image = read_pixels(HEAD "\n-Y 1 +X 8\n", line, sizeof line);
+    check_pixel(&image, 0, 0, 2, k == 1 ? 3 : 2, k == 2 ? 128 : 2);
+  }
+  static uint8_t wide[4 * 32768 + sizeof HEAD + 20];
+  const int length = snprintf((char *)wide, sizeof wide, HEAD "\n-Y 1 +X 32768\n");
+  memset(wide + length, 128, 4 * 32768); /* is beyond what lines in runs can be */
+  abbe_image_free(&image);
+  OK(read_bytes(wide, (size_t)length + 4 * 32768, &image, &error));
+  check_pixel(&image, 32767, 0, 0.5, 0.5, 0.5);
+}
+
 TEST(other_kinds_of_file) {
   abbe_image image;
+  char line[2200];
+  memset(line, 'a', sizeof line);
+  memcpy(line, "#?RADIANCE\n", 11);
+  line[sizeof line - 1] = '\n';
+  REFUSED(ABBE_PARSE, "its header is cut off", read_bytes(line, sizeof line, &image, &error));
   unlink(path);
   REFUSED(ABBE_IO, "", abbe_radiance_read(path, &image, &error));
   assert_int_equal(mkfifo(path, 0600), 0);

@@ -1,6 +1,7 @@
 #include "tests/check.h"
 #include "tests/random.h"
 
+#include "colorimetry/difference.h"
 #include "colorimetry/image/rgb_encoding.h"
 #include "colorimetry/rgb_space.h"
 
@@ -67,9 +68,89 @@ TEST(probes_find_the_encoding) {
   }
 }
 
+/* The curves of the codes of [H273]: a grey's light by each standard's own formula. */
+TEST(codes_say_primaries_and_curve) {
+  static const struct {
+    int transfer;
+    double low, middle; /* the light of 0.04 and of 0.5; below 0: no such code */
+  } rows[] = {{1, 0.04 / 4.5, 0.25959},
+              {6, 0.04 / 4.5, 0.25959},
+              {14, 0.04 / 4.5, 0.25959},
+              {15, 0.04 / 4.5, 0.25959},
+              {4, 8.4049e-4, 0.21764},
+              {5, 1.2184e-4, 0.14359},
+              {8, 0.04, 0.5},
+              {13, 0.04 / 12.92, 0.21404},
+              {2, -1, 0},
+              {3, -1, 0},
+              {7, -1, 0},
+              {17, -1, 0}};
+  static const int primaries[] = {1, 9, 12, 2, 0, 13};
+  static const double red[] = {0.64, 0.708, 0.68};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    for (int p = 0; p < 6; p++) {
+      double xy[8] = {0}, curve[5] = {0};
+      const bool known = p < 3 && rows[i].low > 0;
+      assert_int_equal(abbe_rgb_encoding_of_codes(primaries[p], rows[i].transfer, xy, curve),
+                       known);
+      if (!known) continue;
+      assert_near(xy[0], red[p], 1e-12);
+      assert_int_equal(abbe_rgb_encoding_primaries_code(xy), primaries[p]);
+      assert_near(abbe_rgb_encoding_light(curve, 0.04), rows[i].low, 1e-7);
+      assert_near(abbe_rgb_encoding_light(curve, 0.5), rows[i].middle, 1e-5);
+    }
+}
+
+/* Greys by PQ or HLG, and primaries; a primary without light is none, in whatever curve. */
+TEST(hdr_probes_find_the_transfer) {
+  static const double bt2020[8] = {0.708, 0.292, 0.17, 0.797, 0.131, 0.046, 0.3127, 0.329};
+  for (int kind = 0; kind < 5; kind++) {
+    float xyz[ABBE_RGB_ENCODING_PROBES][3], probe[ABBE_RGB_ENCODING_PROBES][3];
+    const double linear[5] = {1, 1, 0, 0, 0}, white[3] = {0.9505, 1, 1.089};
+    double xy[8], curve[5];
+    int transfer = -1;
+    answer(bt2020, linear, xyz);
+    abbe_rgb_encoding_probes(probe);
+    for (int i = 8; i < ABBE_RGB_ENCODING_PROBES && kind < 4; i++) {
+      const double v = (double)probe[i][0];
+      const double hlg =
+          v <= 0.5 ? v * v / 3 : (exp((v - 0.55991073) / 0.17883277) + 0.28466892) / 12;
+      const double pq = abbe_difference_pq_light(v) / 1e4;
+      for (int c = 0; c < 3; c++)
+        xyz[i][c] = (float)(white[c] * (kind % 2 == 0 ? pq : pow(hlg, 1.2)));
+    }
+    for (int c = 0; c < 3 && kind >= 2; c++) { /* red has no light, and green has all */
+      xyz[1][c] = xyz[3][c] = xyz[5][c] = xyz[7][c] = 0;
+      xyz[2][c] = xyz[4][c];
+      xyz[6][c] = 0.5F * xyz[4][c];
+    }
+    const float(*probes)[3] = (const float(*)[3])xyz;
+    assert_int_equal(abbe_rgb_encoding_of_hdr_probes(probes, xy, &transfer), kind < 2);
+    assert_int_equal(transfer, kind == 0 ? 16 : kind == 1 ? 18 : 0);
+    for (int i = 0; i < 8; i++) assert_near(xy[i], kind < 2 ? bt2020[i] : 0, 1e-4);
+    if (kind == 4) assert_false(abbe_rgb_encoding_of_probes(probes, xy, curve));
+  }
+}
+
+/* [BT2100]: 58 % of PQ is reference white, and so is 75 % of HLG on a display of 1000 cd/m2; black
+ * is black. */
+TEST(light_of_hdr_numbers) {
+  static const double luminance[3] = {0.2627, 0.678, 0.0593};
+  for (int transfer = 16; transfer <= 18; transfer += 2) {
+    double rgb[3] = {0.5807, 0.5807, 0.5807}, black[3] = {0};
+    if (transfer == 18) rgb[0] = rgb[1] = rgb[2] = 0.75;
+    abbe_rgb_encoding_hdr_light(transfer, luminance, rgb);
+    abbe_rgb_encoding_hdr_light(transfer, luminance, black);
+    for (int k = 0; k < 3; k++) {
+      assert_near(rgb[k], 1, 5e-3);
+      assert_near(black[k], 0, 1e-9);
+    }
+  }
+}
+
 /* Each breaks one thing that an encoding of this form has. */
 TEST(probes_of_something_else) {
-  for (int broken = 0; broken < 6; broken++) {
+  for (int broken = 0; broken < 9; broken++) {
     double xy[8], curve[5];
     float xyz[ABBE_RGB_ENCODING_PROBES][3];
     abbe_rgb_encoding_srgb(xy, curve);
@@ -82,6 +163,9 @@ TEST(probes_of_something_else) {
         if (broken == 3 && i == 20) xyz[i][c] += 2e-3f; /* the greys have a step */
         if (broken == 4 && i == 6) xyz[i][c] *= 1.02f;  /* half a green is another curve's */
         if (broken == 5) xyz[i][c] = NAN;
+        if (broken == 6 && i >= 8 && i < 40) xyz[i][c] = 0; /* greys without light */
+        if (broken == 7 && i >= 8 && i < 40) xyz[i][c] = 1; /* or with all of it */
+        if (broken == 8 && i == 0) xyz[i][c] = 2e-3f;       /* black alone is lit */
       }
     const float(*probes)[3] = (const float(*)[3])xyz;
     assert_false(abbe_rgb_encoding_of_probes(probes, xy, curve));
@@ -159,6 +243,27 @@ static void *saved(cmsHPROFILE profile, cmsUInt32Number *size) {
   assert_true(icc != NULL && cmsSaveProfileToMem(profile, icc, size));
   cmsCloseProfile(profile);
   return icc;
+}
+
+/* A curve of another display with P3's primaries is not called by its name. */
+TEST(a_profile_of_some_display) {
+  double xy[8], curve[5] = {2.2, 1, 0, 0, 0}, p3[5];
+  FREED void *icc = NULL;
+  size_t size = 0;
+  char text[40];
+  abbe_rgb_encoding_display_p3(xy, p3);
+  OK(abbe_rgb_encoding_profile(xy, curve, &icc, &size, &error));
+  cmsHPROFILE profile = cmsOpenProfileFromMem(icc, (cmsUInt32Number)size);
+  cmsGetProfileInfoASCII(profile, cmsInfoDescription, "en", "US", text, sizeof text);
+  cmsCloseProfile(profile);
+  assert_string_equal(text, "RGB of a display");
+  OWNED(abbe_image, two) = {0};
+  OK(abbe_image_make(1, 1, 2, names, &two, &error));
+  memcpy(two.xy, xy, sizeof xy);
+  memcpy(two.curve, curve, sizeof curve);
+  REFUSED(ABBE_INVALID_ARGUMENT, "two.png", abbe_rgb_encoding_to_srgb(&two, "two.png", &error));
+  REFUSED(ABBE_COLOUR, "two.png",
+          abbe_rgb_encoding_profile_to_srgb(&two, icc, size, "two.png", &error));
 }
 
 TEST(other_profiles) {

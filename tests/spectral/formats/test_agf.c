@@ -253,6 +253,11 @@ TEST(what_is_no_catalogue_is_refused) {
   refuses("materials:\n- name: x\n", ABBE_PARSE, "no Zemax glass catalogue");
   refuses("NM A 99\n", ABBE_SCHEMA, "none of its 1 glasses can be used; the first: its formula");
   refuses("NM A 14\n", ABBE_SCHEMA, "its formula is '14'");
+  /* a note of another kind comes first */
+  refuses("NM A 14 0 1.5 60 0 1 1e99\n", ABBE_SCHEMA, "the first: its formula is '14'");
+  abbe_material_table table;
+  REFUSED(ABBE_SCHEMA, "none of its 1 glasses can be used",
+          abbe_agf_parse("NM A 14", 7, "x.agf", &table, NULL, &error));
 }
 
 /* A thousand glasses with 33 transmittances each, as a maker's catalogue has. */
@@ -309,6 +314,7 @@ TEST(every_formula_gives_its_catalogues_index) {
        1.8289992,
        5e-7},
       {{5, {1.57410327, 1.39786149e-2, 8.3004511e-4}}, 587.5618, 1.603233, 5e-7},
+      {{5, {1.5, 0, 1e-3}}, 500, /* 1.5 + 1e-3 * 2^3.5 */ 1.5113137, 5e-7},
       {{6,
         {1.03961212, 6.00069867e-3, 0.231792344, 2.00179144e-2, 1.01046945, 103.560653, 0.25, 0}},
        587.5618,
@@ -391,6 +397,10 @@ TEST(other_forms_keep_their_index) {
        .count = 5,
        .c = {0.28604141, 1.07044083, 0.0100585997, 1.10202242, 100}},
       {.model = ABBE_DISPERSION_RII4, .count = 9, .c = {5.913, 0.2441, 0, 0.0803, 1, 0, 0, 0, 1}},
+      {.model = ABBE_DISPERSION_SELLMEIER2, .count = 7, .c = {0, 1.04, 0.006, 0, 0.3, 1.01, 103}},
+      {.model = ABBE_DISPERSION_POLYNOMIAL,
+       .count = 11,
+       .c = {2.27, 0.012, -2, -0.01, 2, 1e-4, -4, 1e-5, -6, 1e-6, -8}},
   };
   for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
     abbe_agf_formula f;
@@ -427,6 +437,17 @@ TEST(what_has_no_formula_is_fitted_with_its_error) {
   assert_true(error > 0 && error < 1e-3);
   assert_int_equal(abbe_agf_formula_write(&moissanite, 700, 500, &f, &fidelity, &error, NULL),
                    ABBE_INVALID_ARGUMENT);
+  const abbe_dispersion many[] = {
+      {.model = ABBE_DISPERSION_CAUCHY, .count = 5, .c = {1.5, 0.004, 1e-5, 1e-7, 1e-8}},
+      {.model = ABBE_DISPERSION_SELLMEIER2,
+       .count = 13,
+       .c = {0, 0.3, 0.006, 0.3, 0.007, 0.3, 0.008, 0.1, 0.009, 0.1, 0.01, 0.1, 0.011}}};
+  for (int i = 0; i < 2; i++) {
+    assert_int_equal(abbe_agf_formula_write(&many[i], 400, 700, &f, &fidelity, &error, NULL),
+                     ABBE_OK);
+    assert_int_equal(fidelity, ABBE_AGF_FITTED);
+    assert_true(error < 1e-4);
+  }
 }
 
 TEST(wrong_formulas_are_named) {

@@ -156,6 +156,42 @@ TEST(absorption_is_carried_to_the_last_bit) {
   abbe_spectrum_free(m.attenuation);
 }
 
+/* A comma at a name's end would part it from what follows; a status that no catalogue has, and a
+ * frequency without one. */
+TEST(odd_fields_come_back) {
+  abbe_material list[2] = {
+      FIELDS(.name = (char[]){"glass,"}, .source = (char[]){"s"}, .min_nm = 400, .max_nm = 700,
+             .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}}),
+      FIELDS(.name = (char[]){"other"}, .source = (char[]){"s"}, .min_nm = 400, .max_nm = 700,
+             .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.6}})};
+  list[0].catalogue.status = (char[]){"withdrawn"};
+  list[0].catalogue.melt_frequency = 3;
+  list[1].fit[1] = (abbe_material_fit){.terms = 3, .c = {1.6}, .min_nm = 400, .max_nm = 700};
+  const abbe_material_table table = {.count = 2, .material = list};
+  OWNED(abbe_report, report) = {0};
+  OWNED(abbe_material_table, back) = reread(&table, &report);
+  assert_string_equal(back.material[0].name, "glass_");
+  assert_null(back.material[0].catalogue.status);
+  assert_near(back.material[0].catalogue.melt_frequency, 3, 0);
+  assert_true(noted(&report, "no place for recorded fits (1 material: other)"));
+}
+
+/* The strongest and the weakest attenuation that a table takes have a thickness that shows them. */
+TEST(extreme_attenuation_comes_back) {
+  static const double nm[] = {400, 500, 600, 700};
+  static const double per_m[] = {1e-6, 3.3e8, 1e9, 1e12}; /* the last is more than AGF can say */
+  abbe_material m =
+      FIELDS(.name = (char[]){"x"}, .source = (char[]){"s"}, .min_nm = 400, .max_nm = 700,
+             .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}});
+  OK(abbe_spectrum_make(nm, per_m, 4, ABBE_INTERPOLATION_LINEAR, &m.attenuation, &error));
+  const abbe_material_table table = {.count = 1, .material = &m};
+  OWNED(abbe_material_table, back) = reread(&table, NULL);
+  for (int i = 0; i < 3; i++)
+    assert_near(abbe_material_attenuation(&back.material[0], nm[i]) / per_m[i], 1, 1e-12);
+  assert_true(abbe_material_attenuation(&back.material[0], 700) > per_m[2]);
+  abbe_spectrum_free(m.attenuation);
+}
+
 TEST(names_and_failures_are_told) {
   abbe_material list[2] = {
       FIELDS(.name = (char[]){"two words, more"}, .source = (char[]){"line\nbreak"}, .min_nm = 400,
@@ -172,7 +208,10 @@ TEST(names_and_failures_are_told) {
   assert_int_equal(back.material[0].dispersion.model, ABBE_DISPERSION_CONSTANT);
   assert_true(noted(&report, "become '_' (1 material: two words, more)"));
   assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], 1);
-  FILE *full = fopen("/dev/full", "w");
-  assert_int_equal(abbe_agf_write(&table, full, NULL, NULL), ABBE_IO);
-  fclose(full);
+  for (int buffered = 0; buffered < 2; buffered++) {
+    FILE *full = fopen("/dev/full", "w");
+    if (!buffered) setvbuf(full, NULL, _IONBF, 0);
+    assert_int_equal(abbe_agf_write(&table, full, NULL, NULL), ABBE_IO);
+    fclose(full);
+  }
 }

@@ -2,13 +2,14 @@
 
 #include "spectral/formats/material_import.h"
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 static char root[64];
 
 /* Files and folders to be removed, the deepest last. */
-static char made[64][256];
+static char made[128][256];
 static int made_count;
 
 static const char *below(const char *name) {
@@ -132,6 +133,61 @@ TEST(a_bad_file_stops_nothing) {
   assert_true(noted(ABBE_NOTE_SKIPPED, "h.txt: is none of what can be read"));
 }
 
+/* Names without an ending or with a short one, links to nothing, and folders too deep to be read.
+ */
+TEST(odd_entries_stop_nothing) {
+  char deep[200] = "d";
+  folder("d");
+  file("d/a.agf", GLASS("A"));
+  file("d/noending", GLASS("B"));
+  file("d/x.y", GLASS("C"));
+  assert_int_equal(symlink("nowhere.agf", below("d/gone.agf")), 0);
+  snprintf(made[made_count++], sizeof made[0], "%s", below("d/gone.agf"));
+  for (int i = 0; i < 33; i++) {
+    strcat(deep, "/e");
+    folder(deep);
+  }
+  for (int i = 0; i < 18; i++) file(printed("d/n%02d.txt", i), "");
+  for (int i = 0; i < 18; i++) file(printed("d/m%02d.agf", i), "");
+  const char *const paths[] = {printed("%s/", below("d"))};
+  runs(paths, 1, NULL);
+  assert_names((const char *const[]){"A"}, 1);
+  assert_true(noted(ABBE_NOTE_SKIPPED, "/e: the folder cannot be read: it lies too deep"));
+  const abbe_import_batch alone = {.path = (const char *const[]){below("d/a.agf")},
+                                   .count = 1,
+                                   .import = {.format = ABBE_IMPORT_AGF, .name = "x"},
+                                   .target = below("d/noending")};
+  OK(abbe_import_batch_run(&alone, &table, &report, &error));
+  assert_null(strstr(paths[0], "//"));
+}
+
+/* Many files are read by several threads, and taken in the order of their names. */
+TEST(many_files_keep_their_order) {
+  folder("m");
+  for (int i = 0; i < 70; i++)
+    file(printed("m/%02d.agf", i), printed("NM G%02d 2 0 1.5 60\nCD 1.2 0.01\nLD 0.3 2\n", i));
+  const char *const paths[] = {below("m")};
+  runs(paths, 1, NULL);
+  assert_int_equal(table.count, 70);
+  for (int i = 0; i < 70; i++) assert_string_equal(table.material[i].name, printed("G%02d", i));
+}
+
+/* A folder that cannot be opened, for no more files can be. */
+TEST(a_folder_that_cannot_be_read) {
+  struct rlimit old, few;
+  folder("d");
+  const char *const paths[] = {below("d")};
+  assert_int_equal(getrlimit(RLIMIT_NOFILE, &old), 0);
+  few = old;
+  few.rlim_cur = 0;
+  assert_int_equal(setrlimit(RLIMIT_NOFILE, &few), 0);
+  abbe_error why = {0};
+  const abbe_result result = run(paths, 1, NULL, &why);
+  assert_int_equal(setrlimit(RLIMIT_NOFILE, &old), 0);
+  assert_int_equal(result, ABBE_IO);
+  assert_contains(why.text, "d: the folder cannot be read: Too many open files");
+}
+
 TEST(nothing_at_all_is_a_failure) {
   folder("empty");
   file("a.yml", "DATA:\n- {type: tabulated k, data: 0.5 1}\n");
@@ -224,6 +280,38 @@ TEST(two_catalogues_glasses_are_kept_apart) {
   assert_names((const char *const[]){"F2", "SF1"}, 2);
   assert_int_equal(report.kinds[ABBE_NOTE_RENAMED], 0);
   assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], 2);
+}
+
+/* A prefix that is no part of a name, and files that are called without a folder or an ending. */
+TEST(odd_prefixes_and_paths) {
+  char *here = getcwd(NULL, 0);
+  folder("s");
+  file("s/one.b.agf", GLASS("G") GLASS("H"));
+  file("s/two", GLASS("G"));
+  file("s/.agf", GLASS("G"));
+  assert_int_equal(chdir(below("s")), 0);
+  const char *const paths[] = {"one.b.agf", "two", ".agf", "two"};
+  runs(paths, 3, NULL);
+  assert_names((const char *const[]){"one.b-G", "H", "two-G", ".agf-G"}, 4);
+  runs(paths, 1, "a\tb\x7f");
+  assert_names((const char *const[]){"a?b?G", "a?b?H"}, 2);
+  runs(paths, 1, "   ");
+  assert_names((const char *const[]){"G", "H"}, 2);
+  runs(paths, 1, "a\xff b"); /* no name would be one */
+  assert_names((const char *const[]){"G", "H"}, 2);
+  file("s/p", "500,1.5\n600,1.4\n");
+  const char *const one[] = {"p"}, *const twice[] = {"./one.b.agf", ".//one.b.agf"};
+  runs(one, 1, NULL);
+  assert_names((const char *const[]){"p"}, 1);
+  runs(twice, 2, NULL); /* the same file, by what its path says */
+  assert_names((const char *const[]){"G", "H"}, 2);
+  OWNED(abbe_material_table, own) = {0};
+  OK(abbe_import_load("two", NULL, &own, NULL, &error)); /* what the table had is nobody's file's */
+  const abbe_import_batch more = {.path = paths, .count = 1};
+  OK(abbe_import_batch_run(&more, &own, NULL, &error));
+  assert_int_equal(own.count, 3);
+  assert_int_equal(chdir(here), 0);
+  free(here);
 }
 
 TEST(long_names_are_cut_before) {

@@ -26,9 +26,21 @@ TEST(the_text_says_what_it_is) {
               {"\"500\";\"1,5\"\n", ABBE_IMPORT_CSV},
               {"20 C\nhello\n", ABBE_IMPORT_AUTO},
               {"20 C, prism\n500,1.5\n", ABBE_IMPORT_CSV},
+              {"NM\tA 2\n", ABBE_IMPORT_AGF},
+              {"<?xml version", ABBE_IMPORT_AUTO},
+              {"<?xml version=\"1.0\"?><materialx>", ABBE_IMPORT_MTLX},
+              {"   \n500 1.5                                                                       "
+               "                                       and a remark\n",
+               ABBE_IMPORT_CSV},
+              {"SQLite format 4 is none", ABBE_IMPORT_AUTO},
               {"  DATA:\n", ABBE_IMPORT_RII}};
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
     assert_int_equal(abbe_import_detect(rows[i].text, strlen(rows[i].text)), rows[i].format);
+  static const char store[20] = "SQLite format 3";
+  assert_int_equal(abbe_import_detect(store, sizeof store), ABBE_IMPORT_STORE);
+  OWNED(abbe_material_table, none) = {0};
+  REFUSED(ABBE_UNSUPPORTED, "a store is read from its file",
+          abbe_import_parse(store, sizeof store, "x", NULL, &none, NULL, &error));
   static const char wide[] = "\xff\xfeN\0M\0 \0A\0\n\0";
   assert_int_equal(abbe_import_detect(wide, sizeof wide - 1), ABBE_IMPORT_AGF);
 }
@@ -89,6 +101,26 @@ TEST(options_name_what_the_file_does_not) {
   assert_string_equal(table.material[0].source, "own measurement");
   assert_near(table.material[0].max_nm, 500, 0);
   assert_non_null(table.material[0].attenuation);
+}
+
+/* A file without an ending is called by all of its name; a metal by its points is a conductor. */
+TEST(points_of_odd_files) {
+  static const char metal[] = "nm,n,k\n400,0.2,3\n500,0.2,3\n600,0.2,3\n700,0.2,3\n";
+  static const char *const paths[] = {"d.x/gold", ".gold", "gold.csv"};
+  static const char *const named[] = {"gold", ".gold", "gold"};
+  for (int i = 0; i < 3; i++) {
+    MADE(abbe_material_table, table,
+         abbe_import_parse(metal, strlen(metal), paths[i], NULL, &table, NULL, &error));
+    assert_string_equal(table.material[0].name, named[i]);
+    assert_true(abbe_material_is_conductor(&table.material[0]));
+  }
+}
+
+TEST(clear_points_have_no_absorption) {
+  static const char clear[] = "nm,n,k\n400,1.5,0\n500,1.5,0\n";
+  MADE(abbe_material_table, table,
+       abbe_import_parse(clear, strlen(clear), "c.csv", NULL, &table, NULL, &error));
+  assert_null(table.material[0].attenuation);
 }
 
 static void refuses(const char *text, const abbe_import_options *options, abbe_result code,

@@ -101,11 +101,16 @@ TEST(what_could_not_be_read_again_is_not_written) {
           abbe_material_write(&m, to, &error));
   fclose(to);
   assert_int_equal(size, 0);
-  FILE *full = fopen("/dev/full", "w");
   m.dispersion.c[0] = 1.5;
   abbe_material_table table = {.count = 1, .material = &m};
-  REFUSED(ABBE_IO, "", abbe_material_table_write(&table, full, &error));
-  fclose(full);
+  for (int buffered = 0; buffered < 2; buffered++) {
+    FILE *full = fopen("/dev/full", "w");
+    if (!buffered) setvbuf(full, NULL, _IONBF, 0);
+    REFUSED(ABBE_IO, "", abbe_material_table_write(&table, full, &error));
+    REFUSED(ABBE_IO, "", abbe_csv_write(&m, NULL, full, NULL, &error));
+    if (!buffered) REFUSED(ABBE_IO, "", abbe_material_write(&m, full, &error));
+    fclose(full);
+  }
 }
 
 /* What is written can be read again: a table with more values than a reader takes is refused. */
@@ -173,6 +178,73 @@ TEST(written_points_are_the_materials) {
   }
 }
 
+/* Fields of a catalogue each alone, texts that are empty, and a matrix of fluorescence. */
+TEST(single_fields_come_back_the_same) {
+  static const char *const rows[] = {
+      "catalogue: {melt_frequency: 3}",
+      "catalogue: {expansion_range_k: [243, 343, 293, 573]}",
+      "catalogue: {ratings: [1, -1, 2, 3, 4, 5]}",
+      "catalogue: {thermal: [1e-6, 0, 0, 0, 0, 0.2]}",
+      "fit: {cauchy3: {coefficients: [1.5, 0.004, 0], max_error: 0.1, range_nm: [400, 700]}}",
+      "absorption: {attenuation_per_m: [[400, 1]]}\n  fluorescence: {matrix: [{nm: 400, emission: "
+      "[[500, 0], [600, 0.01]]}, {nm: 420, emission: [[500, 0], [600, 0.01]]}]}"};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    const char *yaml =
+        printed("materials:\n- name: a\n  model: cauchy\n  coefficients: [1.5, 0.004]\n"
+                "  range_nm: [1, 700]\n  source: s\n  %s\n",
+                rows[i]);
+    MADE(abbe_material_table, table,
+         abbe_material_table_parse(yaml, strlen(yaml), "t.yaml", &table, &error));
+    FREED char *text = NULL;
+    OWNED(abbe_material_table, back) = reread(&table, &text);
+    assert_same_record(&table.material[0], &back.material[0]);
+    assert_int_equal(back.material[0].fluorescence.rows, table.material[0].fluorescence.rows);
+    OWNED(abbe_csv_points, p) = csv_write_reread(&table.material[0], NULL, NULL);
+    assert_true(p.n.count > 2);
+  }
+}
+
+/* A code keeps what codes are of, and a table of a megabyte is read again before it is handed out.
+ */
+TEST(codes_and_large_tables) {
+  enum { POINTS = 60000 };
+  static double nm[POINTS], n[POINTS];
+  abbe_material m =
+      FIELDS(.name = (char[]){"m"}, .source = (char[]){"s"}, .min_nm = 400, .max_nm = 700,
+             .temperature_c = NAN, .dispersion = {.model = ABBE_DISPERSION_TABULATED});
+  for (int i = 0; i < POINTS; i++) nm[i] = 400 + 0.5 * i, n[i] = 1.5 + 1e-9 * i;
+  m.catalogue.code = (char[]){"517_642'.25"};
+  OK(abbe_spectrum_make(nm, n, POINTS, ABBE_INTERPOLATION_LINEAR, &m.dispersion.table, &error));
+  const abbe_material_table table = {.count = 1, .material = &m};
+  FREED char *text = NULL;
+  OWNED(abbe_material_table, back) = reread(&table, &text);
+  assert_true(strlen(text) > 1000000);
+  assert_int_equal(abbe_spectrum_count(back.material[0].dispersion.table), POINTS);
+  assert_string_equal(back.material[0].catalogue.code, "517642.25");
+  abbe_dispersion_free(&m.dispersion);
+}
+
+/* A conductor's points are those of its table. */
+TEST(conductors_are_written_as_they_are) {
+  MADE(abbe_material_table, table, abbe_material_table_load(NULL, &table, &error));
+  const abbe_material *gold = NULL;
+  OK(abbe_material_table_find(&table, "gold", &gold, &error));
+  abbe_material m = *gold;
+  m.source = (char[]){"two\nlines"};
+  m.comment = (char[]){""};
+  const abbe_material_table one = {.count = 1, .material = &m};
+  FREED char *text = NULL;
+  OWNED(abbe_material_table, back) = reread(&one, &text);
+  assert_null(back.material[0].comment);
+  OWNED(abbe_csv_points, p) = csv_write_reread(&m, NULL, NULL);
+  const abbe_dispersion *d = &gold->dispersion;
+  assert_int_equal(p.n.count, abbe_spectrum_count(d->table));
+  for (size_t i = 0; i < p.n.count; i++) {
+    assert_near(p.n.point[i].value, abbe_spectrum_value(d->table)[i], 0);
+    assert_near(p.k.point[i].value, abbe_spectrum_value(d->k)[i], 0);
+  }
+}
+
 static char name[] = "glass", source[] = "s";
 
 static abbe_material glass(void) {
@@ -204,6 +276,34 @@ TEST(what_cannot_be_sampled_is_refused) {
           abbe_csv_write(&m, &(abbe_csv_sampling){380, 780, 5}, to, NULL, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "",
           abbe_csv_write(&m, &(abbe_csv_sampling){400, 700, -1}, to, NULL, &error));
+  static const double ranges[][2] = {{0.5, 700}, {700, 700}, {700, 400}, {400, 2e6}};
+  for (int i = 0; i < 4; i++)
+    REFUSED(
+        ABBE_INVALID_ARGUMENT, "is no range of at most",
+        abbe_csv_write(&m, &(abbe_csv_sampling){ranges[i][0], ranges[i][1], 50}, to, NULL, &error));
+  REFUSED(ABBE_OUT_OF_RANGE, "glass has no index at 780 nm",
+          abbe_csv_write(&m, &(abbe_csv_sampling){400, 780, 5}, to, NULL, &error));
+  m.extrapolate = true; /* over a pole at 77 nm, below which n is not real */
+  m.dispersion =
+      (abbe_dispersion){.model = ABBE_DISPERSION_SELLMEIER2, .count = 3, .c = {0, 1.04, 0.005929}};
+  REFUSED(ABBE_INVALID_ARGUMENT, "75 nm",
+          abbe_csv_write(&m, &(abbe_csv_sampling){50, 100, 25}, to, NULL, &error));
+  OK(abbe_csv_write(&m, &(abbe_csv_sampling){50, 100, 50}, to, NULL, &error));
+  m = glass();
+  m.dispersion.c[0] = -1;
+  REFUSED(ABBE_INVALID_ARGUMENT, "no real index", abbe_csv_write(&m, NULL, to, NULL, &error));
+  const abbe_material_table wrong = {.count = 1, .material = &m};
+  REFUSED(ABBE_INVALID_ARGUMENT, "no real index", abbe_material_table_write(&wrong, to, &error));
+  m = glass();
+  m.min_nm = 900; /* of light that nobody sees it is written where it is */
+  m.max_nm = 950;
+  OWNED(abbe_csv_points, far) = csv_write_reread(&m, NULL, NULL);
+  assert_true(far.n.point[0].lambda_nm == 900 && far.n.point[far.n.count - 1].lambda_nm == 950);
+  m.min_nm = 300;
+  m.max_nm = 350;
+  OWNED(abbe_csv_points, ultra) = csv_write_reread(&m, NULL, NULL);
+  assert_true(ultra.n.point[0].lambda_nm == 300);
+  m = glass();
   REFUSED(ABBE_INVALID_ARGUMENT, "at most 65536 points",
           abbe_csv_write(&m, &(abbe_csv_sampling){400, 700, 1e-4}, to, NULL, &error));
   fclose(to);

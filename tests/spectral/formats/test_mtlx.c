@@ -104,6 +104,79 @@ TEST(what_is_written_is_read_again) {
     assert_near(is.n_d, was.n_d, 1e-6);
     assert_near(is.v_d, was.v_d, 1e-4);
     assert_int_equal(some[i].attenuation != NULL, table.material[i].attenuation != NULL);
+    if (some[i].attenuation == NULL) continue;
+    /* three shares at the distance where the darkest is 1 / e are what the file can say */
+    double colour[3], darkest = 1, back[3];
+    abbe_absorption_colour(some[i].attenuation, 1, colour);
+    for (int k = 0; k < 3; k++) darkest = fmin(darkest, colour[k]);
+    if (!(darkest < 1)) continue;
+    abbe_absorption_colour(some[i].attenuation, -1 / log(fmax(darkest, 1e-300)), colour);
+    abbe_absorption_colour(table.material[i].attenuation, -1 / log(fmax(darkest, 1e-300)), back);
+    for (int k = 0; k < 3; k++) assert_near(back[k], colour[k], 1e-9);
+  }
+}
+
+static char *written(const abbe_material *m) {
+  const abbe_material_table one = {.count = 1, .material = (abbe_material *)(uintptr_t)m};
+  char *text = NULL;
+  size_t size = 0;
+  clean();
+  FILE *to = open_memstream(&text, &size);
+  OK(abbe_mtlx_write(&one, to, &report, &error));
+  fclose(to);
+  return text;
+}
+
+/* Texts keep their letters, names lose what MaterialX does not take, and a record of nothing that
+ * can be written is skipped with the reason. */
+TEST(odd_records_are_written) {
+  static const double nm[] = {400, 700}, clear[] = {0, 0};
+  abbe_material m = *find_material(&shipped, "topaz");
+  FREED char *biaxial = written(&m);
+  assert_contains(biaxial, "name=\"SR_topaz\"");
+  assert_contains(report.note[0].text, "with its middle index");
+  m = *find_material(&shipped, "n-bk7");
+  m.attenuation = NULL;
+  m.source = (char[]){"A & B <c> \"d\"\te"};
+  m.name =
+      (char[]){"a name of more letters than MaterialX's have room, \xc3\xa9 and 1234567890 and "
+               "1234567890 and more than all others together have, so that it is cut"};
+  FREED char *text = written(&m);
+  assert_contains(text, "doc=\"A &amp; B &lt;c> &quot;d&quot; e\"");
+  assert_contains(text, "name=\"a_name_of_more_letters_than_MaterialX_s_have_room_____and_"
+                        "1234567890_and_1234567890_and_more_tha\"");
+  OK(abbe_spectrum_make(nm, clear, 2, ABBE_INTERPOLATION_LINEAR, &m.attenuation, &error));
+  FREED char *same = written(&m); /* which attenuates nothing */
+  assert_null(strstr(same, "transmission_depth"));
+  abbe_spectrum_free(m.attenuation);
+  m.attenuation = NULL;
+  static const struct {
+    double min_nm, max_nm, n;
+  } none[] = {{500, 700, 1.5}, {400, 600, 1.5}, {400, 700, 0.9}, {400, 700, 1.5}};
+  for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
+    m.min_nm = none[i].min_nm;
+    m.max_nm = none[i].max_nm;
+    m.dispersion = (abbe_dispersion){.model = ABBE_DISPERSION_CAUCHY, .count = 2, .c = {none[i].n}};
+    m.dispersion.c[1] = i == 3 ? -0.004 : 0.004;
+    FREED char *nothing = written(&m);
+    assert_null(strstr(nothing, "<open_pbr"));
+    assert_int_equal(report.count, 1);
+    assert_contains(report.note[0].text, "it has no n_d and V_d in its range");
+  }
+  OK(import(
+      DOCUMENT("<gltf_pbr name=\"a\"><note/><input type=\"float\"/>" INPUT(
+          "transmission",
+          "1") "</gltf_pbr><surfacematerial name=\"w\"><input name=\"s\"/></surfacematerial>"),
+      &error));
+  assert_int_equal(table.count, 1);
+  REFUSED(ABBE_PARSE, "'ior' is '1e999'",
+          import(DOCUMENT("<gltf_pbr name=\"a\">" INPUT("ior", "1e999") "</gltf_pbr>"), &error));
+  for (int buffered = 0; buffered < 2; buffered++) {
+    const abbe_material_table one = {.count = 1, .material = &m};
+    FILE *full = fopen("/dev/full", "w");
+    if (!buffered) setvbuf(full, NULL, _IONBF, 0);
+    REFUSED(ABBE_IO, "could not be written", abbe_mtlx_write(&one, full, &report, &error));
+    fclose(full);
   }
 }
 
