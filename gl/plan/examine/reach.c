@@ -4,6 +4,7 @@
 #include "scenes/view/view.h"
 
 #include <math.h>
+#include <string.h>
 
 /* An exact sphere stands out of its triangles. */
 static void bounds(const abbe_object *object, double min[3], double max[3]) {
@@ -162,4 +163,34 @@ bool abbe_reach_is_entered(const abbe_scene *scene, const abbe_object *refractor
         abbe_reach_into(&scene->object[i], refractor))
       return true;
   return false;
+}
+
+/* The plane that a face lies in. */
+static size_t plane_of(const abbe_object *object, size_t face) {
+  const uint32_t *f = object->mesh.face[face];
+  const double *p = object->mesh.position[f[0]];
+  double e[2][3], n[3], most = -INFINITY;
+  size_t plane = 0;
+  for (int k = 0; k < 2; k++) abbe_vector_subtract(object->mesh.position[f[k + 1]], p, e[k]);
+  abbe_vector_cross(e[0], e[1], n);
+  for (size_t i = 0; i < object->exact.count; i++) {
+    const double along = abbe_vector_dot(n, object->exact.plane[i]);
+    if (along > most) plane = i;
+    most = fmax(most, along);
+  }
+  return plane;
+}
+
+bool abbe_refractor_films(const abbe_object *object, uint8_t *film) {
+  uint8_t found[ABBE_SCENE_MAX_PLANES] = {0};
+  bool known[ABBE_SCENE_MAX_PLANES] = {false}, alike = true;
+  const abbe_coatings *c = object->coatings;
+  for (size_t i = 0; i < c->face_count; i++) {
+    const size_t plane = plane_of(object, i);
+    alike = alike && (!known[plane] || found[plane] == c->face[i]);
+    found[plane] = known[plane] && found[plane] != c->face[i] ? 0 : c->face[i];
+    known[plane] = true;
+  }
+  if (film != NULL) memcpy(film, found, object->exact.count);
+  return alike;
 }

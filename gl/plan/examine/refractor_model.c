@@ -6,42 +6,11 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 enum { MAX_FOLLOWED = 32, MAX_REFRACTORS = 255, MAX_LISTED = 48 };
 
 /* An index as near to air's as this bends no ray by more than that, a few grazing ones aside. */
 static const double invisible = 2e-6;
-
-/* The plane that a face lies in. */
-static size_t plane_of(const abbe_object *object, size_t face) {
-  const uint32_t *f = object->mesh.face[face];
-  const double *p = object->mesh.position[f[0]];
-  double e[2][3], n[3], most = -INFINITY;
-  size_t plane = 0;
-  for (int k = 0; k < 2; k++) abbe_vector_subtract(object->mesh.position[f[k + 1]], p, e[k]);
-  abbe_vector_cross(e[0], e[1], n);
-  for (size_t i = 0; i < object->exact.count; i++) {
-    const double along = abbe_vector_dot(n, object->exact.plane[i]);
-    if (along > most) plane = i;
-    most = fmax(most, along);
-  }
-  return plane;
-}
-
-bool abbe_refractor_films(const abbe_object *object, uint8_t *film) {
-  uint8_t found[ABBE_SCENE_MAX_PLANES] = {0};
-  bool known[ABBE_SCENE_MAX_PLANES] = {false}, alike = true;
-  const abbe_coatings *c = object->coatings;
-  for (size_t i = 0; i < c->face_count; i++) {
-    const size_t plane = plane_of(object, i);
-    alike = alike && (!known[plane] || found[plane] == c->face[i]);
-    found[plane] = known[plane] && found[plane] != c->face[i] ? 0 : c->face[i];
-    known[plane] = true;
-  }
-  if (film != NULL) memcpy(film, found, object->exact.count);
-  return alike;
-}
 
 static bool refractor_films_by_face(const abbe_object *object) {
   return object->coatings != NULL && object->coatings->face != NULL &&
