@@ -56,8 +56,9 @@ enum {
    ABBE_SCENE_INPUT_LOOK,                                                                          \
    "NAME",                                                                                         \
    0,                                                                                              \
-   "of a stone's file: white, black, velvet, daylight, darkfield, lightbox, dispersion, fire, "    \
-   "backdrop (white)",                                                                             \
+   "of a stone's file: white, for a catalogue; black, for pale stones; velvet, for a window; "     \
+   "daylight, for its colour; darkfield, for what is inside; lightbox, for its pattern; "          \
+   "dispersion and fire, for its sparks; backdrop, for a poster (white)",                          \
    group},                                                                                         \
       {"with",                                                                                     \
        ABBE_SCENE_INPUT_WITH,                                                                      \

@@ -4,6 +4,7 @@
 #include "gl/caustics/map_fit.h"
 #include "gl/light/light_layers.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,7 +13,7 @@ static const abbe_plan *plan_of(const abbe_caustics *c) {
 }
 
 /* What is fitted is fitted to no more photons than this a side. */
-enum { FIT_PHOTONS = 96 };
+enum { FIT_PHOTONS = 96, LEAST_FIT_PHOTONS = 48 };
 
 static abbe_result count_photons(abbe_caustics *c, abbe_error *error) {
   abbe_result result = ABBE_OK;
@@ -201,8 +202,15 @@ static abbe_result use_grids(abbe_caustics *c, abbe_error *error) {
   return result == ABBE_OK ? abbe_refine_pass_make_room(&c->refine, error) : result;
 }
 
+/* Lights share the photons of a frame, and so those of its fit. */
+static size_t fit_side(size_t lights) {
+  const size_t side = (size_t)lround(FIT_PHOTONS / sqrt((double)lights));
+  return side > LEAST_FIT_PHOTONS ? side : LEAST_FIT_PHOTONS;
+}
+
 static abbe_result start_fit(abbe_caustics *c, abbe_error *error) {
-  const size_t most = plan_of(c)->desc.photons, side = most < FIT_PHOTONS ? most : FIT_PHOTONS;
+  const size_t most = plan_of(c)->desc.photons, shared = fit_side(plan_of(c)->light_view_count);
+  const size_t side = most < shared ? most : shared;
   for (size_t light = 0; light < plan_of(c)->light_view_count; light++)
     c->views->light[light].cells[0] = c->views->light[light].cells[1] = side;
   abbe_photon_lights_upload(c->views);

@@ -60,6 +60,9 @@ static const char egg[] = CAMERA POINT_LIGHT FLOOR EGG("crown");
   "0.2]}], material: crown}\n"
 #define LAMP_BETWEEN                                                                               \
   "lights:\n- {name: lamp, kind: point, position: [0.25, 0, 0.2], intensity: 1}\n"
+#define MIRROR                                                                                     \
+  "- {name: glass, shape: rectangle, width: 0.2, height: 0.2, mirror: 0.9, transform: [{rotate: "  \
+  "{axis: [0, 1, 0], angle: 90}}, {translate: [0.5, 0, 0.2]}]}\n"
 static const char two_balls[] = CAMERA POINT_LIGHT FLOOR BALL("crown") BALL_BESIDE;
 
 /* The plan of a scene and a request, against another scene's with none. */
@@ -92,7 +95,7 @@ typedef struct pair {
       RUNS(PASS_EYE_FRONT, "the pixels that show a refractor"),                                    \
       RESTS(PASS_EYE_BACK, "every refractor has an exact surface"),                                \
       RUNS(PASS_EYE_ADAPTIVE, "4 x 4 rays for a sample of a receiver where its light bends"),      \
-      RUNS(PASS_EYE_REFRACTION, "until less than 0.005 of its light is left, 256 exits at most"),  \
+      RUNS(PASS_EYE_REFRACTION, "until less than 0.02 of its light is left, 256 exits at most"),   \
       RUNS(PASS_EYE_PICTURE, "2 x 2 samples a pixel"), RESTS(CHOICE_TEXTURES, "none"), colours,    \
       RESTS(CHOICE_LIGHT_SIZE, "none"), RESTS(CHOICE_ENVIRONMENT, "none"),
 #define UNLIT                                                                                      \
@@ -208,7 +211,7 @@ static const pair pairs[] = {
               "followed until less than 0.01 of the light is left, 4 exits at most"),
          RUNS(PASS_LIGHT_BACK, "a mesh without an exact surface ends at its back layer"),
          RUNS(PASS_EYE_BACK, "a mesh without an exact surface ends at its back layer"),
-         RUNS(PASS_EYE_REFRACTION, "until less than 0.005 of its light is left, 4 exits at most"),
+         RUNS(PASS_EYE_REFRACTION, "until less than 0.02 of its light is left, 4 exits at most"),
          END}),
     FIELDS(
         "a mesh with a hole for the ball", ball, CAMERA POINT_LIGHT FLOOR TORUS("crown"), {0},
@@ -243,6 +246,14 @@ static const pair pairs[] = {
          RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "a receiver may reach into the refractor"), SHADOWED,
          RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
          END}),
+    FIELDS("a mirror beside it", ball, CAMERA POINT_LIGHT FLOOR BALL("crown") MIRROR, {0},
+           {COUNTS(7, 8, 16),
+            RUNS_OF(CHOICE_REFRACTOR_MODEL, "glass", "triangle hierarchy: the object is a mirror"),
+            RUNS_OF(CHOICE_MIRROR, "", "it reflects 0.9 of the light"),
+            RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "what a mirror sends on may meet a surface again"),
+            RUNS(CHOICE_RECEIVER_MAPS, "a receiver lies more than 76 degrees off"),
+            RUNS(PASS_EYE_REFRACTION, "until less than 0.03 of its light is left, 256 exits"),
+            END}),
     FIELDS("a directional light", ball, CAMERA SUN FLOOR BALL("crown"), {0},
            {RUNS_OF(CHOICE_LIGHT_MAP, "sun", "the light may meet a refractor"),
             GONE(CHOICE_LIGHT_MAP, "lamp"), END}),
