@@ -110,6 +110,13 @@ static inline abbe_dispersion random_dispersion(void) {
   return d;
 }
 
+/* As a crystal's indices are, over the range that has no table. */
+static inline bool is_of_crystals(const abbe_dispersion *d) {
+  for (double nm = 350; d->table == NULL && nm <= 900; nm++)
+    if (!(abbe_dispersion_n(d, nm) <= 10)) return false;
+  return true;
+}
+
 /* A second index over the range of the first. */
 static inline abbe_dispersion random_second(const abbe_dispersion *first) {
   abbe_dispersion d = {.model = ABBE_DISPERSION_TABULATED};
@@ -124,7 +131,7 @@ static inline abbe_dispersion random_second(const abbe_dispersion *first) {
   do {
     abbe_dispersion_free(&d);
     d = random_dispersion();
-  } while (d.table != NULL);
+  } while (d.table != NULL || !is_of_crystals(&d));
   return d;
 }
 
@@ -165,7 +172,8 @@ static inline abbe_material random_material(size_t number) {
     m.max_nm =
         abbe_spectrum_lambda_nm(m.dispersion.table)[abbe_spectrum_count(m.dispersion.table) - 1];
   }
-  if (rand() % 3 == 0) m.extraordinary = random_second(&m.dispersion);
+  if (rand() % 3 == 0 && is_of_crystals(&m.dispersion))
+    m.extraordinary = random_second(&m.dispersion);
   if (m.dispersion.model == ABBE_DISPERSION_CAUCHY && !abbe_material_is_uniaxial(&m))
     for (int i = 0; i < 2; i++) {
       m.outer[i] = m.dispersion;
