@@ -25,7 +25,7 @@ typedef struct work {
 
 static abbe_result find_stone(const abbe_derive_request *q, const abbe_scene *scene, size_t *out,
                               abbe_error *error) {
-  const char *names[ABBE_SCENE_MAX_OBJECTS];
+  const char *names[ABBE_SCENE_MAX_OBJECTS] = {0};
   size_t count = 0;
   for (size_t i = 0; i < scene->object_count; i++) {
     if (strcmp(scene->object[i].name, q->stone) == 0) {
