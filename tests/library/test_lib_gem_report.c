@@ -3,6 +3,8 @@
 
 #include "library/lib_gem_report.h"
 
+#include <unistd.h>
+
 static const char *const design = ABBE_SOURCE_DIR "/scenes/designs/brilliant-diamond.asc";
 static const char *const coarse[] = {"size=16", "repeats=3", "wavelengths=2", "tilt_rad=0"};
 
@@ -65,6 +67,33 @@ TEST(a_degree_more) {
   assert_true(isfinite(number_of(r, "fire_by_pavilion")));
   abbe_lib_gem_report_free(plain);
   abbe_lib_gem_report_free(r);
+}
+
+/* A cut has more facets than a scene's stone may have. */
+TEST(a_degree_more_of_many_facets) {
+  static const char *const with[] = {"size=8", "repeats=3", "wavelengths=2", "tilt_rad=0",
+                                     "slopes=1"};
+  static const struct { double angle, distance; } ring[] = {{-90, 1}, {-43, 0.7173}, {42, 0.70453}};
+  char folder[] = "/tmp/abbe-many-XXXXXX";
+  assert_non_null(mkdtemp(folder));
+  const char *path = printed("%s/many.asc", folder);
+  FILE *file = fopen(path, "w");
+  assert_non_null(file);
+  fprintf(file, "GemCad 5.0\ng 100 0.0\ny 100 y\nI 1.544\n");
+  for (int r = 0; r < 3; r++) {
+    fprintf(file, "a %g %g", ring[r].angle, ring[r].distance);
+    for (int i = 1; i <= 100; i++) fprintf(file, " %d%s", i, i == 1 ? r == 0 ? " n G" : "" : "");
+    fprintf(file, "\n");
+  }
+  fprintf(file, "a 0 0.474 100 n T\n");
+  fclose(file);
+  abbe_lib_gem_report *r = NULL;
+  OK(abbe_lib_gem_report_make(path, "quartz", with, 5, NULL, NULL, &r, &error));
+  assert_true(isfinite(number_of(r, "return_by_crown")));
+  assert_true(isfinite(number_of(r, "return_by_pavilion")));
+  abbe_lib_gem_report_free(r);
+  remove(path);
+  rmdir(folder);
 }
 
 /* Its own angles change nothing; a flat pavilion is a window. */

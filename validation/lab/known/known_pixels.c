@@ -1,5 +1,5 @@
 /* Derivatives of a camera's pixels: lamps over a floor, outlines in front of a bright ground,
- * panes, and edges that are seen through a slab and in a mirror. */
+ * panes, a plate within glass, and edges that are seen through a slab and in a mirror. */
 #include "validation/lab/known/forms/closed_form.h"
 #include "validation/lab/known/known_light.h"
 
@@ -28,6 +28,11 @@
   "- {name: pane, shape: box, size: [1, 1, " thickness "], material: n-bk7}\n"                     \
   "- {name: mote, shape: rectangle, width: 1e-6, height: 1e-6, reflectance: 0,\n"                  \
   "   transform: [{translate: [0, 0, -1]}]}\n" /* a scene has to have a receiver */
+#define CORE(reflectance)                                                                          \
+  LOOK("[0, 0, 2]", "0.1")                                                                         \
+  "environment: {uniform: 1, illuminant: E}\nobjects:\n"                                           \
+  "- {name: ball, shape: sphere, radius: 1, material: n-bk7}\n"                                    \
+  "- {name: plate, shape: rectangle, width: 0.2, height: 0.2, reflectance: " reflectance "}\n"
 #define SLAB(thickness, edge)                                                                      \
   "- {name: slab, shape: box, size: [0.5, 0.5, " thickness "], material: n-bk7,\n"                 \
   "   transform: [{rotate: {axis: [0, 1, 0], angle: 40}}]}\n"                                      \
@@ -110,6 +115,16 @@ static double pane_by_thickness(double thickness, const abbe_material *glass) {
   return mean_of(glass, 0, 20 * thickness, of_pane);
 }
 
+/* All light meets the ball head on, and what the ball reflects of the plate's light comes back to
+ * the plate, which is not followed. */
+static double of_core(double n, double reflectance) {
+  return reflectance * pow(1 - abbe_closed_form_fresnel(0, n), 2);
+}
+
+static double core_by_reflectance(double reflectance, const abbe_material *glass) {
+  return mean_of(glass, 0, reflectance, of_core);
+}
+
 #define SLAB_FOV 0.5
 #define SLAB_ANGLE (40 * ABBE_DEGREE)
 
@@ -188,6 +203,15 @@ static const pixel_row rows[] = {
      INTERFACES,
      pane_by_thickness,
      1e-4},
+    {"a plate's in the middle of a glass ball by its reflectance",
+     "W/(m2 sr)",
+     CORE("%.17g"),
+     0.5,
+     {0},
+     {0},
+     STRAIGHT,
+     core_by_reflectance,
+     1e-3},
     {"an edge's seen through a tilted slab by its thickness",
      "W/(m3 sr)",
      LOOK("[0, 0, 2]", "0.5") FAR SLAB("%.17g", "0.495"),

@@ -187,6 +187,11 @@ static void add_surroundings(const leaf *f, const double d[3], double share) {
       share * abbe_upsampling_at(&f->s->upsampling, rgb, f->l->wave[f->scene].lambda_nm));
 }
 
+/* Of the medium that a place is in. Radiance over its square is the same all along a path. */
+static double index_at(const leaf *f, uint64_t inside) {
+  return inside != 0 ? f->l->wave[f->scene].n[63 - __builtin_clzll(inside)] : 1;
+}
+
 static bool hides(const leaf *f, const double d[3], double limit) {
   const abbe_specular_hit *h = &f->tree->hit[f->hit];
   return abbe_specular_hides(&f->s->specular, ABBE_SPECULAR_ALL, h->p, d, h->inside, limit,
@@ -219,6 +224,7 @@ static void add_sky(const leaf *f) {
   const abbe_environment *drawn = f->l->film->scene[0].specular.scene->environment;
   const double *chance = f->l->chance;
   const abbe_specular_hit own = f->tree->hit[f->hit];
+  const double n = index_at(f, own.inside);
   double d[3], pdf, rgb[3], x[3], y[3];
   abbe_environment_sample(drawn, chance + DRAWN, d, &pdf, rgb);
   double cosine = abbe_vector_dot(f->n, d) / ABBE_PI;
@@ -236,7 +242,7 @@ static void add_sky(const leaf *f) {
     if (h->object != ABBE_SPECULAR_NOTHING) continue;
     cosine = sqrt(1 - r * r) / ABBE_PI;
     const double straight = cosine / (abbe_environment_pdf(drawn, h->d) + cosine);
-    add_surroundings(f, h->d, h->flux * (h->met > 0 ? 1 : straight));
+    add_surroundings(f, h->d, h->flux * (h->met > 0 ? n * n : straight));
   }
 }
 
@@ -325,8 +331,7 @@ static void add_leaf(leaf *f) {
     if (abbe_vector_dot(h->d, scene->light[light].direction) < 0)
       add(f, light, scene->light[light].power);
   } else {
-    /* radiance over the squared index is kept */
-    const double n = h->inside != 0 ? f->l->wave[f->scene].n[63 - __builtin_clzll(h->inside)] : 1;
+    const double n = index_at(f, h->inside);
     f->share /= n * n;
     add_receiver(f);
   }

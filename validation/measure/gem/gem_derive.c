@@ -113,7 +113,7 @@ static double apart(const double a[4], const double b[4]) {
 
 /* Of a moved stone's planes each that is the base's plane i; false where they are not the same. */
 static bool match(const abbe_gem_stone *base, const abbe_gem_stone *moved, size_t *of) {
-  bool taken[ABBE_SCENE_MAX_PLANES] = {false};
+  bool taken[ABBE_CUT_MAX_FACETS] = {false};
   if (moved->plane_count != base->plane_count) return false;
   for (size_t i = 0; i < base->plane_count; i++) {
     double least = INFINITY;
@@ -129,7 +129,8 @@ static bool match(const abbe_gem_stone *base, const abbe_gem_stone *moved, size_
 }
 
 typedef struct change {
-  double plane[ABBE_SCENE_MAX_PLANES][4], *n, *loss, spread; /* n, loss: owned */
+  double plane[ABBE_CUT_MAX_FACETS][4], *n, *loss, spread; /* n, loss: owned */
+  size_t of[2][ABBE_CUT_MAX_FACETS]; /* planes of the moved stones, by the base's */
 } change;
 
 /* Half of the difference over a step. Below its rounding nothing changes. */
@@ -141,10 +142,9 @@ static double slope(double low, double high, double step, bool *felt) {
 
 static abbe_result find_change(const abbe_gem_derive_stone *base, const abbe_gem_derive_key *key,
                                change *c, bool *felt, abbe_error *error) {
-  size_t of[2][ABBE_SCENE_MAX_PLANES];
   const abbe_gem_derive_stone *low = &key->moved[0], *high = &key->moved[1];
   for (int s = 0; s < 2; s++)
-    if (!match(&base->gem, &key->moved[s].gem, of[s]))
+    if (!match(&base->gem, &key->moved[s].gem, c->of[s]))
       return abbe_error_set(error, ABBE_UNSUPPORTED,
                             "'%s' changes which faces there are, and not only where they lie: it "
                             "has no derivative",
@@ -153,7 +153,7 @@ static abbe_result find_change(const abbe_gem_derive_stone *base, const abbe_gem
   for (size_t i = 0; i < base->gem.plane_count; i++)
     for (int k = 0; k < 4; k++)
       c->plane[i][k] =
-          slope(low->gem.plane[of[0][i]][k], high->gem.plane[of[1][i]][k], key->step, felt);
+          slope(low->gem.plane[c->of[0][i]][k], high->gem.plane[c->of[1][i]][k], key->step, felt);
   for (size_t k = 0; k < base->gem.wavelengths; k++) {
     c->n[k] = slope(low->n[k], high->n[k], key->step, felt);
     c->loss[k] = slope(low->loss[k], high->loss[k], key->step, felt);
