@@ -60,8 +60,14 @@ void abbe_film_fields(const abbe_film_layer *layer, size_t count, bool reversed,
 
 /* Which of the rising points is below, and how far the next is. */
 static size_t place(const double *x, size_t count, double at, double *part) {
-  size_t i = 0;
-  while (i + 2 < count && x[i + 1] <= at) i++;
+  size_t i = 0, last = count < 2 ? 0 : count - 2;
+  while (i < last) {
+    const size_t middle = (i + last + 1) / 2;
+    if (x[middle] <= at)
+      i = middle;
+    else
+      last = middle - 1;
+  }
   *part = count < 2 ? 0 : fmin(fmax((at - x[i]) / (x[i + 1] - x[i]), 0), 1);
   return i;
 }
