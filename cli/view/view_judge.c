@@ -103,8 +103,8 @@ static abbe_lib_gem_report *report_of(const asked *a, size_t side, bool few, boo
   line[count++] = one;
   if (few) line[count++] = five;
   if (slopes) line[count++] = with;
-  if (count < 3 || abbe_lib_gem_report_make(line[0], line[1], line + 2, count - 2, NULL, NULL,
-                                            &report, NULL) != ABBE_OK)
+  if (a->count < 2 || abbe_lib_gem_report_make(line[0], line[1], line + 2, count - 2, NULL, NULL,
+                                               &report, NULL) != ABBE_OK)
     return NULL;
   return report;
 }
@@ -162,6 +162,8 @@ static void *judge(void *user) {
   asked a;
   split(out, &a);
   abbe_lib_gem_report *report = report_of(&a, out->side, !fine, fine);
+  /* A cut at whose angle facets come or go has no slopes, but numbers. */
+  if (report == NULL && fine) report = report_of(&a, out->side, false, false);
   for (int i = 0; i < ABBE_VIEW_JUDGED_NUMBERS; i++)
     out->value[i] = number_of(report, numbers[i], &out->error[i]);
   memset(out->change, 0, sizeof out->change);
