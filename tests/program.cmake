@@ -139,6 +139,8 @@ if(ABBE_VIEWER)
   add_test(NAME view_window COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/view/window
     $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
   abbe_label(program NAMES view_window)
+  abbe_test(view_listener cpu abbe_view_state abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
+  target_sources(test_view_listener PRIVATE ${PROJECT_SOURCE_DIR}/cli/view/view_listen.c)
   abbe_test(view_settings cpu abbe_view_work abbe_view_state abbe_gl abbe_validation abbe_scenes
     abbe_colorimetry abbe_spectral abbe_base)
   abbe_test(view_worker gl abbe_view_work abbe_view_state abbe_gl abbe_validation abbe_scenes

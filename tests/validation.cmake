@@ -3,7 +3,7 @@ foreach(name
     accumulator
     bands band_trace
     camera
-    checkpoint checkpoint_forged
+    checkpoint checkpoint_forged checkpoint_scenes
     closed_form
     compare compare_noise
     denoise

@@ -114,8 +114,8 @@ static void receive(abbe_view_listener *l, sender *s) {
     refuse(l, s, "no memory for a packet, or more than 512 MiB of packets at once");
     return;
   }
-  const ssize_t n = recv(s->socket, s->bytes + s->size, s->room - s->size, 0);
-  if (n < 0 && (errno == EAGAIN || errno == EINTR)) return;
+  const ssize_t n = recv(s->socket, s->bytes + s->size, s->room - s->size, MSG_DONTWAIT);
+  if (n < 0 && errno == EAGAIN) return;
   if (n <= 0) {
     drop(s);
     return;

@@ -110,7 +110,7 @@ static void refuse(abbe_view_guard *g, size_t place) {
 static bool drop(abbe_view_guard *g, size_t place) {
   char text[LINE_BYTES];
   const ssize_t size = recv(g->waiting[place].socket, text, sizeof text, MSG_DONTWAIT);
-  if (size == 0 || (size < 0 && errno != EAGAIN && errno != EINTR)) end(g, place);
+  if (size == 0 || (size < 0 && errno != EAGAIN)) end(g, place);
   return size > 0;
 }
 
@@ -119,7 +119,7 @@ static void judge(abbe_view_guard *g, size_t place) {
   char line[LINE_BYTES + 1];
   const int socket = g->waiting[place].socket;
   const ssize_t size = recv(socket, line, LINE_BYTES, MSG_PEEK | MSG_DONTWAIT);
-  if (size == 0 || (size < 0 && errno != EAGAIN && errno != EINTR)) end(g, place);
+  if (size == 0 || (size < 0 && errno != EAGAIN)) end(g, place);
   if (size <= 0) return;
   line[size] = '\0';
   char *last = memchr(line, '\n', (size_t)size);
@@ -161,8 +161,8 @@ static void admit_all(abbe_view_guard *g, double now_s) {
       admit(g, socket, now_s);
     else if (errno == EMFILE || errno == ENFILE)
       end(g, g->next++ % ABBE_VIEW_GUARD_WAITING); /* the oldest gives way */
-    else if (errno != EINTR && errno != ECONNABORTED)
-      return;
+    else
+      return; /* what still waits is told again */
   }
 }
 

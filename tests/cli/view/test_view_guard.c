@@ -147,6 +147,86 @@ TEST(a_line_without_an_end_is_refused) {
   close(s);
 }
 
+/* Closed so that the other side is told of it as of an error. */
+static void break_off(int socket) {
+  const struct linger at_once = {.l_onoff = 1};
+  setsockopt(socket, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  close(socket);
+}
+
+/* Whenever they go, in order or not, their place is free again: at once, or, where half a line
+ * stays unread, when its time is over. */
+TEST(who_goes_leaves_nothing) {
+  static const struct {
+    const char *before, *after; /* what is said before a look, and behind it; NULL: no more */
+    bool half;
+  } cases[] = {{"", NULL, false},
+               {"GE", NULL, true},
+               {"GE", "T", true},
+               {"GET / HTTP/1.1\r\n", NULL, false},
+               {"GET / HTTP/1.1\r\n", "X: more of it", false}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    for (int way = 0; way < 4; way++) {
+      const int s = come(cases[i].before);
+      const size_t place = guard.next;
+      if (way % 2 == 0) look();
+      const char *more = cases[i].after;
+      if (more != NULL) assert_int_equal(send(s, more, strlen(more), MSG_NOSIGNAL), strlen(more));
+      if (way < 2)
+        close(s);
+      else
+        break_off(s);
+      look();
+      assert_int_equal(guard.next, place + 1);
+      if (cases[i].half) guard.waiting[place].since_s -= ABBE_VIEW_GUARD_HEAD_S;
+      if (cases[i].half) look();
+      assert_int_equal(guard.waiting[place].socket, -1);
+    }
+  assert_int_equal(entered, 0);
+}
+
+/* With no descriptor left the oldest gives way to who comes. */
+TEST(without_descriptors_the_oldest_goes) {
+  struct rlimit files, fewer;
+  getrlimit(RLIMIT_NOFILE, &files);
+  come_strangers(3, "");
+  look();
+  const int s = come(RIGHT), next = dup(s);
+  assert_true(next >= 0);
+  close(next);
+  fewer = files;
+  fewer.rlim_cur = (rlim_t)next;
+  setrlimit(RLIMIT_NOFILE, &fewer);
+  look();
+  setrlimit(RLIMIT_NOFILE, &files);
+  assert_int_equal(entered, 1);
+  assert_non_null(answer(stranger[0]));
+  assert_null(answer(stranger[2]));
+  close(s);
+}
+
+/* As many descriptors as it may have, and what it says of it. */
+TEST(a_guard_without_descriptors_says_so) {
+  static const char *const says[] = {"no socket for the page", "no socket to listen"};
+  struct rlimit files, fewer;
+  getrlimit(RLIMIT_NOFILE, &files);
+  for (int more = 0; more < 2; more++) {
+    abbe_view_guard other = {.token = TOKEN};
+    abbe_error why = {0};
+    const int next = dup(0);
+    close(next);
+    fewer = files;
+    fewer.rlim_cur = (rlim_t)(next + more);
+    setrlimit(RLIMIT_NOFILE, &fewer);
+    const abbe_result result = abbe_view_guard_begin(&other, 0, &why);
+    setrlimit(RLIMIT_NOFILE, &files);
+    assert_int_equal(result, ABBE_IO);
+    assert_contains(why.text, says[more]);
+    abbe_view_guard_end(&other);
+  }
+  abbe_view_guard_end(&(abbe_view_guard){.token = TOKEN}); /* which has not begun */
+}
+
 TEST(nobody_waits_for_long) {
   come_strangers(1, "GET / HTTP/1.1");
   look();
