@@ -47,11 +47,12 @@ typedef struct server {
   unsigned long frame; /* its number; 0: none yet */
 } server;
 
-/* What a request has brought so far. */
+/* What a request has brought so far, and room for the events of it. */
 typedef struct body {
   char text[MOST_BYTES + 1];
   size_t size;
   bool too_long;
+  abbe_view_events events;
 } body;
 
 static server *served; /* whom wake means */
@@ -132,24 +133,23 @@ static enum MHD_Result send_picture(server *s, struct MHD_Connection *c) {
 
 /* All of the lines, or none. */
 static enum MHD_Result take_events(server *s, struct MHD_Connection *c, body *b) {
-  abbe_view_events *own = calloc(1, sizeof *own);
+  abbe_view_events *own = &b->events;
   abbe_view_event event;
   abbe_error error = {0};
   bool full = false;
-  abbe_result result = own != NULL ? ABBE_OK : ABBE_NO_MEMORY;
+  abbe_result result = ABBE_OK;
   for (char *rest = b->text, *line; result == ABBE_OK && !full;) {
     if ((line = strtok_r(rest, "\n", &rest)) == NULL) break;
     result = abbe_view_event_read(line, &event, &error);
     full = result == ABBE_OK && !abbe_view_events_add(own, &event);
   }
   pthread_mutex_lock(&s->lock);
-  full = full || (own != NULL && s->events.count + own->count > ABBE_VIEW_MOST_EVENTS);
+  full = full || s->events.count + own->count > ABBE_VIEW_MOST_EVENTS;
   if (result == ABBE_OK && !full) {
     while (abbe_view_events_take(own, &event)) abbe_view_events_add(&s->events, &event);
     pthread_cond_signal(&s->called);
   }
   pthread_mutex_unlock(&s->lock);
-  free(own);
   if (result != ABBE_OK) return say(c, MHD_HTTP_BAD_REQUEST, error.text);
   if (full) return say(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many events wait");
   return say(c, MHD_HTTP_NO_CONTENT, "");
@@ -318,24 +318,27 @@ static void publish(server *s) {
   pthread_mutex_unlock(&s->lock);
 }
 
-static bool take_event(server *s, abbe_view_event *out) {
+/* One of those that wait, which this thread alone takes. */
+static abbe_view_event take_event(server *s) {
+  abbe_view_event event = {0};
   pthread_mutex_lock(&s->lock);
-  const bool there = abbe_view_events_take(&s->events, out);
+  abbe_view_events_take(&s->events, &event);
   pthread_mutex_unlock(&s->lock);
-  return there;
+  return event;
 }
 
 static void loop(server *s) {
   while (!stopped) {
     const double least = 0.01; /* where something always moves */
-    abbe_view_event event;
     pthread_mutex_lock(&s->lock);
     const size_t count = s->events.count; /* those that come meanwhile see a picture first */
     s->woken = false;
     pthread_mutex_unlock(&s->lock);
     const double until = abbe_clock_seconds() + APPLY_S;
-    for (size_t i = 0; i < count && !stopped && abbe_clock_seconds() < until; i++)
-      if (take_event(s, &event)) apply(&event, &s->hidden);
+    for (size_t i = 0; i < count && !stopped && abbe_clock_seconds() < until; i++) {
+      const abbe_view_event event = take_event(s);
+      apply(&event, &s->hidden);
+    }
     if (stopped) return;
     abbe_view_hidden_frame(&s->hidden);
     publish(s);

@@ -223,7 +223,6 @@ abbe_result abbe_volume_keeping_begin(abbe_volume_keeping *k, size_t *node, abbe
   ABBE_TRY(abbe_volume_checkpoint_load(k->path, k->key, &nodes, k->part, k->parts, k->stop, error));
   if (nodes > k->nodes || !k->holds(k->user, (size_t)nodes))
     return abbe_error_set(error, ABBE_PARSE, "%s is damaged: start anew without --resume", k->path);
-  if (is_stopped(k->stop)) return abbe_error_set(error, ABBE_CANCELLED, "stopped");
   *node = (size_t)nodes;
   return ABBE_OK;
 }

@@ -209,6 +209,95 @@ TEST(requests) {
   assert_near(v.error, done.error, 0);
 }
 
+/* Each is right but for one thing. */
+TEST(requests_beyond_the_limits_are_refused) {
+  static const struct {
+    abbe_volume_fill_desc desc;
+    const char *says;
+  } cases[] = {
+      {FIELDS(.object = 1, .photons = ABBE_VOLUME_FILL_MOST_PHOTONS + 1), "at most 67108864 and"},
+      {FIELDS(.object = 1, .passes = ABBE_VOLUME_FILL_MOST_PASSES + 1), "100001 passes"},
+      {FIELDS(.object = 1, .exits = 100, .kind = ABBE_VOLUME_PRINTED), "they are not printed"},
+      {FIELDS(.object = 1, .light = 1), ""},
+      {FIELDS(.object = 1, .nodes = 1u << 30), ""},
+      {FIELDS(.object = 1, .photons = 1, .region = {.kind = ABBE_REGION_GRID, .side = 1u << 20}), ""},
+      {FIELDS(.object = 1, .photons = 1, .region = {.inner = 2, .outer = 1}), ""},
+      {FIELDS(.object = 1, .photons = 1, .min_nm = 100, .max_nm = 110,
+              .region = {.kind = ABBE_REGION_GRID, .side = 4}),
+       ""}};
+  OWNED(abbe_scene, scene) = scene_of(ORB("crown"));
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    abbe_caustic_volume v;
+    abbe_volume_fill_statistics done;
+    REFUSED(ABBE_INVALID_ARGUMENT, cases[i].says,
+            abbe_volume_fill(&scene, &cases[i].desc, &v, &done, &error));
+    assert_null(v.value);
+  }
+}
+
+/* What is not said of the region: triangles around values, texels around exits. */
+TEST(sizes_that_are_not_said) {
+  OWNED(abbe_scene, scene) = scene_of(ORB("crown"));
+  for (int exits = 0; exits < 2; exits++) {
+    abbe_volume_fill_statistics done;
+    const abbe_volume_fill_desc desc = {
+        .object = 1, .nodes = exits ? 12 : 0, .exits = exits ? 50 : 0, .photons = 100, .passes = 1};
+    FILLED(abbe_caustic_volume, v, fill_volume(&scene, &desc, &v, &done));
+    assert_int_equal(v.region.desc.kind, exits ? ABBE_REGION_OCTAHEDRAL : ABBE_REGION_GEODESIC);
+    assert_int_equal(v.region.row, exits ? 48 * 48 : 5120);
+    assert_int_equal(v.region.rows, 24);
+    assert_int_equal(v.nodes.count, exits ? 12 : 1);
+    assert_true(isnan(v.error) || !(v.error > 0)); /* one pass has none */
+  }
+}
+
+/* Stopped from outside, before a pass and while a checkpoint is read. */
+TEST(a_flag_stops) {
+  static const char path[] = "volume-fill-stop-test";
+  static const volatile int stop = 1;
+  abbe_volume_fill_statistics done;
+  OWNED(abbe_scene, scene) = scene_of(ORB("crown"));
+  abbe_volume_fill_desc desc = {.object = 1,
+                                .nodes = 1,
+                                .region = {.kind = ABBE_REGION_GRID, .side = 4},
+                                .photons = 1000,
+                                .stop = &stop,
+                                .checkpoint = path,
+                                .resume = true};
+  for (int times = 0; times < 2; times++) {
+    abbe_caustic_volume v;
+    REFUSED(ABBE_CANCELLED, "stopped", abbe_volume_fill(&scene, &desc, &v, &done, &error));
+    assert_int_equal(access(path, F_OK), 0);
+  }
+  desc.stop = NULL;
+  FILLED(abbe_caustic_volume, v, fill_volume(&scene, &desc, &v, &done));
+  assert_int_equal(done.photons, 4000);
+  unlink(path);
+}
+
+/* An error that one photon a pass never comes below ends with the most passes; where one goes past
+ * all cells, what is printed is dark. */
+TEST(one_photon_a_pass) {
+  abbe_volume_fill_statistics done;
+  OWNED(abbe_scene, scene) = scene_of(ORB("crown"));
+  abbe_volume_fill_desc desc = {.object = 1,
+                                .nodes = 1,
+                                .region = {.kind = ABBE_REGION_GRID, .side = 2},
+                                .photons = 1,
+                                .passes = 1,
+                                .until_error = 1e-9,
+                                .threads = 1};
+  FILLED(abbe_caustic_volume, v, fill_volume(&scene, &desc, &v, &done));
+  assert_int_equal(done.passes, ABBE_VOLUME_FILL_MOST_PASSES);
+  assert_true(done.error > 1e-9);
+  desc.until_error = 0;
+  desc.kind = ABBE_VOLUME_PRINTED;
+  desc.region.outer = 1e-4;
+  FILLED(abbe_caustic_volume, dark, fill_volume(&scene, &desc, &dark, &done));
+  assert_near(dark.byte, 1.0 / 255, 0);
+  for (size_t i = 0; i < 8 * 3; i++) assert_int_equal(dark.value[i], 0);
+}
+
 /* How much of a cell an object leaves: of a ball in a grid, by its volume. */
 
 TEST(a_ball_takes_its_volume) {

@@ -270,3 +270,53 @@ TEST(forged_files_are_refused) {
     unlink(path);
   }
 }
+
+/* Numbers of a fill that none can have; each alone. */
+TEST(forged_statistics_are_refused) {
+  typedef abbe_volume_fill_statistics statistics;
+  const double beyond = INFINITY, below = -1, zero = 0;
+  const size_t few = 2, many = 9999;
+  const uint16_t half = 0x3800, over = 0x5c01, minus = 0xbc00; /* 0.5, 256.25, -1 */
+  const struct {
+    bool printed_alone;
+    size_t at; /* SIZE_MAX: the first value; else in the statistics, behind the byte */
+    const void *bytes;
+    size_t count;
+  } cases[] = {{false, offsetof(statistics, error), &beyond, 8},
+               {false, offsetof(statistics, error), &below, 8},
+               {false, offsetof(statistics, outflow), &beyond, 8},
+               {false, offsetof(statistics, ledger.reached), &beyond, 8},
+               {false, offsetof(statistics, passes), &few, sizeof few},
+               {false, offsetof(statistics, passes), &many, sizeof many},
+               {false, offsetof(statistics, photons), &many, sizeof many},
+               {false, (size_t)-8, &below, 8},
+               {true, (size_t)-8, &zero, 8},
+               {true, SIZE_MAX, &half, 2},
+               {true, SIZE_MAX, &over, 2},
+               {true, SIZE_MAX, &minus, 2}};
+  OWNED(abbe_scene, scene) = scene_of(CAMERA SUN FLOOR BRICK("crown"));
+  for (int printed = 0; printed < 2; printed++) {
+    OWNED(abbe_caustic_volume, part);
+    statistics done;
+    abbe_volume_fill_desc d = request(false);
+    FREED char *data = NULL;
+    size_t size;
+    d.kind = printed ? ABBE_VOLUME_PRINTED : ABBE_VOLUME_VECTOR;
+    d.checkpoint = path;
+    d.checkpoint_s = 1000;
+    d.progress = stop_halfway;
+    assert_int_equal(abbe_volume_fill(&scene, &d, &part, &done, NULL), ABBE_CANCELLED);
+    d.progress = NULL;
+    d.resume = true;
+    OK(abbe_file_read(path, 1 << 24, &data, &size, &error));
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+      const size_t from_end = cases[i].at == SIZE_MAX ? size - HEAD
+                                                      : TAIL + sizeof(statistics) - cases[i].at;
+      if (printed || !cases[i].printed_alone)
+        forge(&scene, &d, data, size, from_end, cases[i].bytes, cases[i].count);
+    }
+    write_forged(data, size);
+    OK(abbe_volume_fill(&scene, &d, &part, &done, &error));
+    unlink(path);
+  }
+}
