@@ -64,6 +64,7 @@ static abbe_result checkpoint(abbe_error *error) {
   const char *path = operation_path("trace.checkpoint");
   abbe_result result = abbe_checkpoint_save(traced, path, error);
   if (result == ABBE_OK) result = abbe_checkpoint_load(traced, path, error);
+  if (result == ABBE_OK) result = abbe_checkpoint_merge(traced, &path, 1, NULL, error);
   return result;
 }
 

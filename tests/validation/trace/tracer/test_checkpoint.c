@@ -137,6 +137,7 @@ TEST(another_request_is_named) {
       {{.width = 10, .height = 7, .no_map = true, .photons = 2000, .bands = 2}, "map 0 x 0"},
       {{.width = 10, .height = 7, .map_width = 8, .photons = 2000, .bands = 2, .guides = true},
        "guides for a filter"},
+      {{.no_picture = true, .map_width = 8, .photons = 2000, .bands = 2}, "picture 0 x 0"},
   };
   for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
     abbe_trace_desc desc = others[i].desc;
@@ -261,6 +262,9 @@ TEST(broken_files_are_told) {
   assert_int_equal(abbe_tracer_passes(tracer), 0);
 }
 
+#define LONGER "a line that is longer than all that a checkpoint says of its run in its first lines "
+#define LONG LONGER LONGER LONGER LONGER
+
 TEST(what_is_no_checkpoint_is_told) {
   static const struct {
     const char *text, *part;
@@ -269,6 +273,7 @@ TEST(what_is_no_checkpoint_is_told) {
                {"abbe checkpoint 1\nscene 1\n\n", "another version"},
                {"abbe checkpoint 11\n", "broken"},
                {"abbe checkpoint 11\nscene 0123", "broken"},
+               {"abbe checkpoint 11\n" LONG LONG LONG LONG "\n\n", "broken"},
                {"abbe checkpoint 11\n\n\n", "start anew"}};
   abbe_error why;
   HELD(abbe_tracer, tracer) = make_tracer(&scene, &small);
@@ -279,6 +284,8 @@ TEST(what_is_no_checkpoint_is_told) {
   }
   unlink(path);
   REFUSED(ABBE_IO, path, load(tracer, &error));
+  /* a file that opens and cannot be read: what it begins with is no memory of this process */
+  REFUSED(ABBE_IO, "/proc/self/mem", abbe_checkpoint_load(tracer, "/proc/self/mem", &error));
   REFUSED(ABBE_IO, "/nowhere/at/all", abbe_checkpoint_save(tracer, "/nowhere/at/all", &error));
 }
 
@@ -362,8 +369,40 @@ TEST(gaps_and_overlaps_are_named) {
   data[size - 20] = (char)(data[size - 20] ^ 1);
   OK(abbe_file_write(other, data, size, &error));
   check_unmerged((const char *[]){file[0], other}, 2, ABBE_PARSE, "damaged");
+  /* cut behind the lines of text, and of no pass */
+  OK(abbe_file_write(other, data, (size_t)(strstr(data, "\n\n") - data) + 6, &error));
+  check_unmerged((const char *[]){file[0], other}, 2, ABBE_PARSE, "cut off or holds no pass");
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &small);
+  OK(abbe_checkpoint_save(tracer, other, &error));
+  check_unmerged((const char *[]){other}, 1, ABBE_PARSE, "cut off or holds no pass");
   unlink(other);
   for (int k = 0; k < PARTS; k++) unlink(file[k]);
+}
+
+/* Passes first, first + step, ... of that many. */
+static void save_steps(size_t first, size_t step, size_t count, const char *file) {
+  HELD(abbe_tracer, tracer) = make_tracer(&scene, &small);
+  OK(abbe_tracer_begin_at(tracer, first, step, &error));
+  run_passes(tracer, count);
+  OK(abbe_checkpoint_save(tracer, file, &error));
+}
+
+/* Parts that take every second and third pass meet in some. */
+TEST(overlaps_of_steps_are_named) {
+  static const struct {
+    size_t step[2], count[2];
+    const char *says;
+  } cases[] = {{{2, 2}, {2, 2}, "both hold pass 0 and others"},
+               {{2, 3}, {3, 2}, "both hold pass 0"},
+               {{1, 2}, {1, 2}, "both hold pass 0"},
+               {{2, 1}, {1, 3}, "both hold pass 0"}};
+  char file[2][ROOM];
+  for (int k = 0; k < 2; k++) snprintf(file[k], ROOM, "%s/steps-%d.ck", folder, k);
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (int k = 0; k < 2; k++) save_steps(0, cases[i].step[k], cases[i].count[k], file[k]);
+    check_unmerged((const char *[]){file[0], file[1]}, 2, ABBE_INVALID_ARGUMENT, cases[i].says);
+  }
+  for (int k = 0; k < 2; k++) unlink(file[k]);
 }
 
 /* The passes first to done - 1, of a whole. */
