@@ -68,3 +68,41 @@ TEST(the_queue_has_an_end) {
   }
   assert_int_equal(q.count, 0);
 }
+
+/* Each is right but for one thing. */
+TEST(lines_that_are_no_events_are_refused) {
+  static const char *const lines[] = {
+      "",          " \t\r",      "fly away",
+      "move",      "move 1",     "move 1 x",
+      "move 1 2y", "move 1 1e9", "size 5",
+      "size 5 0",  "wheel",      "wheel 1e3",
+      "down",      "down 3",     "up -1",
+      "key",       "key s",      "key s apart",
+      "key s",     "down x",     "key a-key-with-a-name-that-is-longer-than-all down"};
+  for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+    char line[96];
+    abbe_view_event e;
+    snprintf(line, sizeof line, "%s", lines[i]);
+    REFUSED(ABBE_PARSE, "' is no event", abbe_view_event_read(line, &e, &error));
+  }
+  const abbe_view_event e = event("key s down shift control words that nobody reads");
+  assert_true(e.shift && e.control && e.down);
+}
+
+/* A turn of the wheel waits for the place it is at. */
+TEST(a_wheel_elsewhere_is_another) {
+  static const struct {
+    const char *before, *then; /* what waits ahead of the wheel, and what comes behind it */
+    size_t count;
+  } cases[] = {{NULL, "move 5 5", 2},       {"down 0", "move 5 5", 3},
+               {"move 5 5", "move 5 6", 3}, {"move 5 5", "move 6 5", 3},
+               {"move 5 5", "move 5 5", 2}, {"move 5 5", "up 0", 3}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    static abbe_view_events q;
+    q.first = q.count = 0;
+    if (cases[i].before != NULL) add(&q, cases[i].before);
+    add(&q, "wheel 1");
+    add(&q, cases[i].then);
+    assert_int_equal(q.count, cases[i].count);
+  }
+}

@@ -104,6 +104,39 @@ TEST(what_is_no_packet_ends_its_connection) {
   }
 }
 
+/* Room comes with what has come, and goes again. */
+TEST(a_long_packet_has_short_ones_behind_it) {
+  enum { LONG = 1 << 20 };
+  const int s = come();
+  size_t size = 0;
+  FREED char *bytes = calloc(LONG, 1);
+  memcpy(bytes, (const char[]){0, 0, 16, 0, 2, 'l'}, 6);
+  for (size_t at = 0; at < LONG; at += LONG / 16) say(s, bytes + at, LONG / 16);
+  for (char name = 'a'; name <= 'z'; name++) say_close(s, name);
+  FREED char *taken_bytes = taken(&size);
+  assert_int_equal(size, LONG);
+  assert_memory_equal(taken_bytes, bytes, LONG);
+  for (char name = 'a'; name <= 'z'; name++) take_close(name);
+  close(s);
+}
+
+/* One that breaks off amid a packet is forgotten; what nobody takes goes with the listener. */
+TEST(who_breaks_off_is_forgotten) {
+  const struct linger at_once = {.l_onoff = 1};
+  const int s = come(), other = come();
+  say_close(s, 'a');
+  say(s, "\7\0\0", 3);
+  take_close('a');
+  setsockopt(s, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  close(s);
+  for (int i = 0; i < 20; i++) rest();
+  say_close(other, 'b');
+  take_close('b');
+  say_close(other, 'c');
+  for (int i = 0; i < 100; i++) rest();
+  close(other);
+}
+
 /* Where the window takes none they wait, in the queue and in the socket; all come in the end. */
 TEST(more_than_the_queue_holds_wait) {
   const int s = come();

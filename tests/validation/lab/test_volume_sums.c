@@ -310,8 +310,8 @@ TEST(forged_statistics_are_refused) {
     d.resume = true;
     OK(abbe_file_read(path, 1 << 24, &data, &size, &error));
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-      const size_t from_end = cases[i].at == SIZE_MAX ? size - HEAD
-                                                      : TAIL + sizeof(statistics) - cases[i].at;
+      const size_t from_end =
+          cases[i].at == SIZE_MAX ? size - HEAD : TAIL + sizeof(statistics) - cases[i].at;
       if (printed || !cases[i].printed_alone)
         forge(&scene, &d, data, size, from_end, cases[i].bytes, cases[i].count);
     }

@@ -262,7 +262,8 @@ TEST(broken_files_are_told) {
   assert_int_equal(abbe_tracer_passes(tracer), 0);
 }
 
-#define LONGER "a line that is longer than all that a checkpoint says of its run in its first lines "
+#define LONGER                                                                                     \
+  "a line that is longer than all that a checkpoint says of its run in its first lines "
 #define LONG LONGER LONGER LONGER LONGER
 
 TEST(what_is_no_checkpoint_is_told) {

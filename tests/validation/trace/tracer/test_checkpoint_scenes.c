@@ -12,13 +12,13 @@ static const char path[] = "checkpoint-scenes-test";
 #define LIT SEEN_BY("") POINT_LIGHT
 #define STONE(material) LIT FLOOR BEADS(material)
 #define SKY(radiance)                                                                              \
-  SEEN_BY("") "environment: {uniform: " radiance ", illuminant: E, size: 64}\n" FLOOR              \
-              BEADS("n-bk7")
+  SEEN_BY("")                                                                                      \
+  "environment: {uniform: " radiance ", illuminant: E, size: 64}\n" FLOOR BEADS("n-"               \
+                                                                                "bk7")
 #define PLATE(surface)                                                                             \
   LIT FLOOR "- {name: plate, shape: rectangle, width: 0.1, height: 0.1, " surface                  \
             ", transform: [{translate: [0, 0, 0.3]}]}\n" BEADS("n-bk7")
-#define MIST(words)                                                                                \
-  LIT "medium: {" words ", box: [[-1, -1, 0], [1, 1, 1]]}\n" FLOOR BEADS("n-bk7")
+#define MIST(words) LIT "medium: {" words ", box: [[-1, -1, 0], [1, 1, 1]]}\n" FLOOR BEADS("n-bk7")
 #define AXES(x, z) STONE("tanzanite, axes: {x: " x ", z: " z "}")
 
 static const char *const scenes[][2] = {
