@@ -1,7 +1,7 @@
 /* observer_integral.h: integrals over wavelength of a light as the standard observer sees it.
  *
  * Gauss-Legendre pieces cut at every knot of the observer, the CIE's illuminants and a tabulated
- * light: exact for their stated interpolations. Internal to colorimetry/.
+ * light: exact for their stated interpolations.
  */
 #ifndef ABBE_COLORIMETRY_OBSERVER_INTEGRAL_H
 #define ABBE_COLORIMETRY_OBSERVER_INTEGRAL_H

@@ -110,13 +110,14 @@ static abbe_result check_curve(const abbe_material *m, const abbe_dispersion *d,
   return ABBE_OK;
 }
 
-/* Indices of a crystal are such as stones have, and three ascend at every wavelength. */
+/* Indices of a crystal are such as stones have, and three ascend at every wavelength. A record
+ * without a range is judged where light may be traced, for a formula of Cauchy has no end at 0. */
 static abbe_result check_order(const abbe_material *m, abbe_error *error) {
   enum { STEPS = 1000 };
   const bool three = abbe_material_is_biaxial(m);
+  const double from = fmax(m->min_nm, 100), to = fmax(from, fmin(m->max_nm, 10000));
   for (int i = 0; i <= STEPS; i++) {
-    const double nm = m->min_nm + (m->max_nm - m->min_nm) * i / STEPS,
-                 b = abbe_dispersion_n(&m->dispersion, nm),
+    const double nm = from + (to - from) * i / STEPS, b = abbe_dispersion_n(&m->dispersion, nm),
                  a = three ? abbe_dispersion_n(&m->outer[0], nm) : b,
                  c = abbe_dispersion_n(three ? &m->outer[1] : &m->extraordinary, nm);
     if (three && (a > b || b > c))

@@ -45,7 +45,7 @@ TEST(indices_that_cannot_be_are_refused) {
       {"biaxial: {" GAMMA "}", "'biaxial' wants 'alpha' too"},
       {"biaxial: {" ALPHA ", " GAMMA ", delta: 1}", "has no key 'delta'"},
       {"biaxial: {" ALPHA ", gamma: {model: constant, coefficients: [1.5]}}",
-       "its indices are to ascend, alpha <= beta <= gamma; at 1 nm they are 1.6, 1.65, 1.5"},
+       "its indices are to ascend, alpha <= beta <= gamma; at 100 nm they are 1.6, 1.65, 1.5"},
       {"biaxial: {" ALPHA ", gamma: {model: constant, coefficients: [11]}}",
        "an index of a crystal is above 0 and at most 10"},
       {"extraordinary: {model: constant, coefficients: [11]}", "an index of a crystal is above 0"},
