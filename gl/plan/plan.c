@@ -64,8 +64,8 @@ static void list_sizes(const abbe_scene *scene, abbe_plan *plan) {
   else
     abbe_plan_add(
         plan, ABBE_CHOICE_LIGHT_SIZE,
-        "a %s, '%.40s' first: %zu points stand for each, with as many sharp shadows; where "
-        "nothing hides it receivers have its light in closed form",
+        "a %s, '%.40s' first: %zu points stand for each, with as many shadows, soft ones of convex "
+        "solids; where nothing hides it receivers have its light in closed form",
         disk->kind == ABBE_LIGHT_DISK ? "disk" : "rectangle", disk->name, disk->points);
 }
 

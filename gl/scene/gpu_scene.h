@@ -156,7 +156,8 @@ typedef struct abbe_gpu_scene {
   /* [(light views + 1) x bands]: rgb of each light of unit power, last of the scene's illuminant */
   float haze_white[(ABBE_SCENE_MAX_LIGHTS + 1) * ABBE_PLAN_HAZE_BANDS][3];
 
-  abbe_gpu_shadow_row *shadow_row; /* all ranges, then all planes */
+  /* All ranges, all planes, and with area lights the width of each's penumbra. */
+  abbe_gpu_shadow_row *shadow_row;
   size_t shadow_planes; /* 0: none, or more than a block holds: faces are asked one by one */
 } abbe_gpu_scene;
 
@@ -262,10 +263,12 @@ abbe_result abbe_bvh_nodes_pack(const abbe_bvh *hierarchy, const double (*triang
  * position, or for a directional one x itself. There are the planes of the outline and, if `faces`,
  * those of the lit faces: without them places between the solid and the light count as in shadow
  * too. One plane that holds for no place where the light is in front of no face, as for a light
- * inside. Capacity of out: twice `count`, and one. ABBE_NO_MEMORY; what is found is *found. */
+ * inside. edge . x': how many times as far from the light x is as the edge of the solid on its ray,
+ * where x lies on a plane of the outline; `edge` is 0 of other planes, and for directional lights.
+ * Capacity of out and edge: twice `count`, and one. ABBE_NO_MEMORY; what is found is *found. */
 abbe_result abbe_shadow_planes_make(const double (*plane)[4], size_t count, const double inside[3],
                                     const abbe_light *light, bool faces, double (*out)[4],
-                                    size_t *found, abbe_error *error);
+                                    double (*edge)[3], size_t *found, abbe_error *error);
 
 /* Whether some part of the object may lie between a convex object and the light: false only where a
  * plane, the object's own or across an axis, has the object on one side and those two on the other,

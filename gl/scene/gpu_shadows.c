@@ -17,7 +17,8 @@ static void place_of(const abbe_light *light, double out[4]) {
  * only the corners of their convex hull bound the shadow. */
 typedef struct side {
   double n[3], d;
-  double at[2]; /* in that plane */
+  double at[2];             /* in that plane */
+  const double *lit, *dark; /* faces that meet in it */
 } side;
 
 static int by_place(const void *a, const void *b) {
@@ -73,9 +74,22 @@ static void join(const double lit[4], double before, const double dark[4], doubl
                  const double inside[3], side *out) {
   for (int k = 0; k < 3; k++) out->n[k] = before * dark[k] + behind * lit[k];
   out->d = before * dark[3] + behind * lit[3];
+  out->lit = lit;
+  out->dark = dark;
   const double depth = out->d - abbe_vector_dot(out->n, inside);
   for (int k = 0; k < 3; k++) out->n[k] /= depth;
   out->d /= depth;
+}
+
+/* The plane through the edge across the side, as what is 1 on it, from the light. */
+static void find_edge(const side *s, const double at[4], double out[3]) {
+  const double a = abbe_vector_dot(s->dark, s->n), b = -abbe_vector_dot(s->lit, s->n);
+  double d = a * s->lit[3] + b * s->dark[3];
+  for (int k = 0; k < 3; k++) {
+    out[k] = a * s->lit[k] + b * s->dark[k];
+    d -= out[k] * at[k];
+  }
+  for (int k = 0; k < 3; k++) out[k] = d == 0 ? 0 : out[k] / d;
 }
 
 static size_t store_sides(const side *hull, size_t count, bool far, double (*out)[4]) {
@@ -89,7 +103,7 @@ static size_t store_sides(const side *hull, size_t count, bool far, double (*out
 
 abbe_result abbe_shadow_planes_make(const double (*plane)[4], size_t count, const double inside[3],
                                     const abbe_light *light, bool faces, double (*out)[4],
-                                    size_t *found, abbe_error *error) {
+                                    double (*edge)[3], size_t *found, abbe_error *error) {
   double at[4], axis[3], u[3], v[3];
   size_t lit = 0, pairs = 0, n = 0;
   *found = 0;
@@ -118,6 +132,8 @@ abbe_result abbe_shadow_planes_make(const double (*plane)[4], size_t count, cons
     }
   }
   if (pairs > 0) n = store_sides(all + pairs, keep_hull(all, pairs, all + pairs), at[3] == 0, out);
+  memset(edge, 0, (2 * count + 1) * sizeof *edge);
+  for (size_t i = 0; i < n && at[3] != 0; i++) find_edge(&all[pairs + i], at, edge[i]);
   for (size_t i = 0; i < count && faces; i++) {
     if (!(before[i] > 0)) continue;
     memcpy(out[n], plane[i], sizeof out[n]);
@@ -168,7 +184,7 @@ bool abbe_shadow_planes_in_front(const abbe_object *convex, const abbe_light *li
 }
 
 typedef struct shadow {
-  double plane[2 * ABBE_SCENE_MAX_PLANES + 1][4];
+  double plane[2 * ABBE_SCENE_MAX_PLANES + 1][4], edge[2 * ABBE_SCENE_MAX_PLANES + 1][3];
   size_t count;
 } shadow;
 
@@ -202,7 +218,16 @@ static abbe_result make_shadow(abbe_gpu_scene *scene, size_t light, size_t refra
   return abbe_shadow_planes_make((const double(*)[4])object->exact.plane, object->exact.count,
                                  middle, &scene->local->light[light],
                                  needs_faces(scene, object, &scene->local->light[light]),
-                                 out->plane, &out->count, error);
+                                 out->plane, out->edge, &out->count, error);
+}
+
+/* Of the part of a light that a point stands for, as a disk of its area: half of the width of the
+ * smooth step that has its variance across a plane. 0 of lights without a size. */
+static double half_width(const abbe_light *light, const double normal[3]) {
+  if (light->points == 0) return 0;
+  const double off = abbe_vector_dot(light->direction, normal);
+  const double radius = sqrt(abbe_light_area(light) / ((double)light->points * ABBE_PI));
+  return sqrt(1.25 * fmax(1 - off * off, 0)) * radius;
 }
 
 /* A few counts for all: shaders are compiled for so many, and a light that moves changes its own.
@@ -217,19 +242,25 @@ static abbe_result keep_shadows(abbe_gpu_scene *scene, const shadow *found, size
   static const float on_no_side[4] = {0, 0, 0, 1e30f}; /* whatever is asked lies within it */
   size_t planes = 0, next = 0;
   for (size_t i = 0; i < pairs; i++) planes += found[i].count;
-  const size_t rows = padded(planes);
-  if (planes == 0 || (pairs + rows) * sizeof *scene->shadow_row > ABBE_GPU_BLOCK_BYTES)
+  const size_t rows = padded(planes), tables = abbe_gpu_area_lights_count(scene) > 0 ? 2 : 1;
+  if (planes == 0 || (pairs + tables * rows) * sizeof *scene->shadow_row > ABBE_GPU_BLOCK_BYTES)
     return ABBE_OK;
-  scene->shadow_row = calloc(pairs + rows, sizeof *scene->shadow_row);
+  scene->shadow_row = calloc(pairs + tables * rows, sizeof *scene->shadow_row);
   if (scene->shadow_row == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for shadows");
   scene->shadow_planes = rows;
   for (size_t i = 0; i < pairs; i++) {
     scene->shadow_row[i].range[0] = (int)next;
     scene->shadow_row[i].range[1] = (int)found[i].count;
-    for (size_t k = 0; k < found[i].count; k++, next++)
-      for (int c = 0; c < 4; c++)
-        scene->shadow_row[pairs + next].plane[c] = (float)found[i].plane[k][c];
+    for (size_t k = 0; k < found[i].count; k++, next++) {
+      const double *plane = found[i].plane[k], *edge = found[i].edge[k];
+      for (int c = 0; c < 4; c++) scene->shadow_row[pairs + next].plane[c] = (float)plane[c];
+      const double wide =
+          tables == 1 ? 0
+                      : half_width(&scene->local->light[i / scene->plan->refractor_count], plane);
+      for (int c = 0; c < 4 && wide > 0 && abbe_vector_length(edge) > 0; c++)
+        scene->shadow_row[pairs + rows + next].plane[c] = (float)(wide * (c < 3 ? edge[c] : -1));
+    }
   }
   for (; next < rows; next++)
     memcpy(scene->shadow_row[pairs + next].plane, on_no_side, sizeof on_no_side);
@@ -238,8 +269,9 @@ static abbe_result keep_shadows(abbe_gpu_scene *scene, const shadow *found, size
 
 static abbe_result upload(abbe_gpu_scene *scene, size_t pairs, abbe_error *error) {
   if (scene->shadow_planes == 0) return ABBE_OK;
+  const size_t tables = abbe_gpu_area_lights_count(scene) > 0 ? 2 : 1;
   return abbe_gpu_make_buffer(scene->gpu,
-                              (pairs + scene->shadow_planes) * sizeof *scene->shadow_row,
+                              (pairs + tables * scene->shadow_planes) * sizeof *scene->shadow_row,
                               scene->shadow_row, &scene->shadows, error);
 }
 

@@ -54,6 +54,9 @@ vec4 own_plane[PLANE_ROOM];
 layout(std140, binding = BINDING_SHADOW_PLANES) uniform ShadowPlanes {
   ivec4 shadow_range[LIGHT_ROOM * REFRACTOR_ROOM];
   vec4 shadow_planes[SHADOW_PLANES];
+#ifdef AREA_LIGHTS
+  vec4 shadow_edges[SHADOW_PLANES];  // half of the penumbra's width there: . (x, 1)
+#endif
 };
 #ifdef EACH_SHADOW_PLANE
 vec4 own_shadow_plane[SHADOW_PLANES];

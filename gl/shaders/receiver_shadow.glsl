@@ -29,8 +29,9 @@ bool receiver_lit(int light, vec3 p, vec3 n, vec3 d, float distance_m) {
 }
 
 #ifdef SHADOW_PLANES
-// In the shadow of a convex refractor: within all its planes.
-bool convex_shadow(int light, int refractor, vec3 p) {
+// Share of a light that a convex refractor leaves: its shadow is within all its planes. A point of a light with a size
+// stands for a part of it, whose penumbra is as wide as the edge is far.
+float convex_lit(int light, int refractor, vec3 p) {
   vec3 x = int(LIGHT(light).position.w) == 2 ? p : p - LIGHT(light).position.xyz;
 #ifdef ONE_SHADOW
   const int first = 0, count = SHADOW_PLANES;
@@ -38,42 +39,50 @@ bool convex_shadow(int light, int refractor, vec3 p) {
   ivec2 range = shadow_range[light * REFRACTORS + refractor].xy;
   int first = range.x, count = range.y;
 #endif
-  float most = -1e30;
+  if (count == 0) return 1.0;
+  float most = -1e30, wide = 0.0;
+#ifdef AREA_LIGHTS
+  int at = 0;
+#define CROSS(i) { float off = dot(SHADOW_PLANE(i).xyz, x) - SHADOW_PLANE(i).w; at = off > most ? i : at; most = max(most, off); }
+  OF_SHADOW_PLANES(CROSS)
+  wide = dot(shadow_edges[first + at], vec4(x, 1));
+#else
 #define CROSS(i) most = max(most, dot(SHADOW_PLANE(i).xyz, x) - SHADOW_PLANE(i).w);
   OF_SHADOW_PLANES(CROSS)
-  return count > 0 && most < 0.0;
+#endif
+  return wide > 0.0 ? smoothstep(-wide, wide, most) : float(most >= 0.0);
 }
 #endif
 
-// A refractor with an exact surface stands between the light and p, or around p.
-bool exact_shadow(int light, vec3 p, vec3 d, float distance_m) {
+// Share of a light that refractors with exact surfaces leave, between it and p or around p.
+float exact_lit(int light, vec3 p, vec3 d, float distance_m) {
   Hit h;
   // The ray begins close before all refractors: from farther away it would miss them by its rounding.
   h.t = min(distance_m, max(dot(p - refractor_bounds.xyz, d) + 1.01 * refractor_bounds.w, 0.0));
   vec3 from = p - h.t * d;
 #ifndef SHADOW_PLANES
-  return exact_front(from, d, h);
+  return exact_front(from, d, h) ? 0.0 : 1.0;
 #else
-  bool hidden = false;
+  float lit = 1.0;
   for (int r = 0; r < REFRACTORS; r++) {
-    hidden = convex_shadow(light, r, p) || hidden;
+    lit = min(lit, convex_lit(light, r, p));
 #ifdef SPHERES
-    if (refractors[r].info.x == MODEL_SPHERE)
-      hidden = sphere_front(refractors[r].sphere, from, d, h) || hidden;
+    if (refractors[r].info.x == MODEL_SPHERE && sphere_front(refractors[r].sphere, from, d, h)) lit = 0.0;
 #endif
   }
-  return hidden;
+  return lit;
 #endif
 }
 
 // Share of direct light that no refractor takes away before p.
 float refractor_shadow(int light, vec3 p, vec3 d, float distance_m) {
   if (LIGHT(light).misc.w == 0.0) return 1.0;
-  if (exact_shadow(light, p, d, distance_m)) return 0.0;
+  float exact = exact_lit(light, p, d, distance_m);
+  if (exact == 0.0) return 0.0;
 #ifdef FRONT_LAYER
   vec3 uvz;
   View v = LIGHT(light).near_view;
-  if (!project(v, p, uvz)) return 1.0;
+  if (!project(v, p, uvz)) return exact;
   ivec2 size = textureSize(light_layers, 0).xy;
   vec2 at = uvz.xy * vec2(size) - 0.5;
 #ifdef CUBES
@@ -90,8 +99,8 @@ float refractor_shadow(int light, vec3 p, vec3 d, float distance_m) {
     float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
     lit += front <= 0.0 || front > uvz.z ? w : 0.0;
   }
-  return lit;
+  return exact * lit;
 #else
-  return 1.0;
+  return exact;
 #endif
 }

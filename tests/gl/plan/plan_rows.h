@@ -54,8 +54,8 @@ static inline line *put(lines *l, row_kind kind, abbe_plan_item item) {
   "lights:\n- {name: lamp, kind: disk, position: [0.05, 0.03, 0.6], target: [0, 0, 0], radius: "   \
   "0.05, radiance: 100}\n"
 #define LAMP_HAS_SIZE                                                                              \
-  "a disk, 'lamp' first: 1 points stand for each, with as many sharp shadows; where nothing "      \
-  "hides it receivers have its light in closed form"
+  "a disk, 'lamp' first: 1 points stand for each, with as many shadows, soft ones of convex "      \
+  "solids; where nothing hides it receivers have its light in closed form"
 
 /* Of a scene with facets. */
 #define IN_ROWS RUNS(PASS_SPECTRAL_MAP, "splats in rows: a refractor has facets")

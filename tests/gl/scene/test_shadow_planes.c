@@ -132,10 +132,12 @@ static double outside(const double (*plane)[4], size_t count, const abbe_light *
   return most;
 }
 
+static double edge[2 * MOST + 1][3]; /* of the planes that planes_of has found last */
+
 static size_t planes_of(const solid *s, const abbe_light *light, bool faces, double (*out)[4]) {
   size_t count = 0;
   OK(abbe_shadow_planes_make((const double(*)[4])s->plane, s->count, origin, light, faces, out,
-                             &count, &error));
+                             edge, &count, &error));
   assert_true(count >= 1 && count <= 2 * s->count);
   for (size_t i = 0; i < count; i++)
     assert_true(fabs(abbe_vector_length(out[i]) - 1) < 1e-12 && isfinite(out[i][3]));
@@ -192,6 +194,11 @@ TEST(a_cube_over_the_ground) {
     assert_true(outside((const double(*)[4])plane, count, &lamp, inside) < 0);
     assert_true(outside((const double(*)[4])plane, count, &lamp, beside) > 0);
   }
+  for (size_t i = 0; i < count; i++) {
+    const double half = 0.5 * 3.5 / 1.5,
+                 mid[3] = {half * round(plane[i][0]), half * round(plane[i][1]), -3.5};
+    assert_float_equal(abbe_vector_dot(edge[i], mid), 3.5 / 1.5, 1e-12);
+  }
   /* From x = -0.5 at the foot's near edge to where the ray over the far upper edge lands. */
   count = planes_of(&s, &sun, false, plane);
   assert_int_equal(count, 4);
@@ -222,7 +229,7 @@ TEST(outlines_are_short) {
   assert_int_equal(planes_of(&s, &corner, true, plane) > 3, 1);
   size_t count = 0;
   OK(abbe_shadow_planes_make((const double(*)[4])s.plane, s.count, origin, &within, true, plane,
-                             &count, &error));
+                             edge, &count, &error));
   assert_int_equal(count, 1);
   assert_true(outside((const double(*)[4])plane, count, &within, anywhere) > 0);
 }
@@ -268,7 +275,7 @@ TEST(the_shader_agrees) {
       "#define SHADOW_PLANES %zu\n"
       "#include \"refractor.glsl\"\n#include \"receiver.glsl\"\n"
       "vec4 f(vec4 a, vec4 b) {\n"
-      "  return vec4(convex_shadow(int(a.w), 0, a.xyz) ? 1 : 0);\n}\n",
+      "  return vec4(1.0 - convex_lit(int(a.w), 0, a.xyz));\n}\n",
       SHADER_SOLIDS, SHADER_SOLIDS, sizeof shadow.plane / sizeof shadow.plane[0]);
   GLuint block[2] = {glsl_block(gl, BINDING_LIGHTS, sizeof lights, lights),
                      glsl_block(gl, BINDING_SHADOW_PLANES, sizeof shadow, &shadow)};
