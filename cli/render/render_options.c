@@ -164,6 +164,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
       argp_error(
           state,
           "which scene? Give a file such as scenes/gem.yaml, or a stone's such as round.asc");
+    o->changes.studio.columns = d->width;
+    o->changes.studio.rows = d->height;
     return 0;
   default:
     return abbe_scene_input_take(&o->changes, key, text, p);

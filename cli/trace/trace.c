@@ -246,6 +246,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (q->filter && q->part_end == 0 && ((q->exr == NULL && q->png == NULL) || q->passes == 1))
       argp_error(state, "--filter needs a picture (-o, --png) of two passes or more (--spp 2)");
     q->screen.alpha = q->changes.alpha;
+    q->changes.studio.columns = q->desc.width;
+    q->changes.studio.rows = q->desc.height;
     q->series.stated = q->screen.stated || q->png == NULL;
     abbe_screen_options_end(&q->screen, q->png, state);
     if (q->screen.exposed && q->series.count > 0)

@@ -212,13 +212,16 @@ static abbe_result set_camera(building *b, abbe_error *error) {
   free(names);
   if (b->studio->with == ABBE_STUDIO_WITH_RING && result == ABBE_OK)
     result = put(b, value_of(b, "camera"), "fill", "0.45", error); /* with some of the band */
-  if (b->count == 1) return result;
+  const bool sized = b->studio->columns > 0 && b->studio->rows > 0;
+  if (b->count == 1 && !sized) return result;
   /* as many pixels a stone as in a picture of its own, up to three of these across */
   const double across = (double)b->columns * b->pitch[0], down = (double)b->rows * b->pitch[1];
   const double side = 512 * fmin((double)b->columns, 3);
   abbe_number_format(size, sizeof size, "[%.0f, %.0f]", side,
                      fmax(256, fmin(side, side * down / across)));
-  if (result == ABBE_OK) result = put(b, value_of(b, "camera"), "fill", "0.85", error);
+  if (sized) snprintf(size, sizeof size, "[%zu, %zu]", b->studio->columns, b->studio->rows);
+  if (result == ABBE_OK && b->count > 1)
+    result = put(b, value_of(b, "camera"), "fill", "0.85", error);
   return result == ABBE_OK ? put(b, value_of(b, "camera"), "size", size, error) : result;
 }
 

@@ -43,6 +43,7 @@ typedef struct abbe_studio {
   abbe_studio_with with;
   const char *metal;    /* metal of a ring or a setting, a conductor of the table; NULL: gold */
   int setting;          /* 1 + an abbe_setting_kind, around each stone; 0: none */
+  size_t columns, rows; /* pixels of the picture; 0: its own */
   double width_m;       /* the smaller extent of each stone's outline; 0: as its file has it */
   const char *material; /* material of all stones; NULL: the file's, or the one that its index is
                            nearest to */

@@ -111,6 +111,38 @@ TEST(several_stand_side_by_side) {
   }
 }
 
+/* How far beside the middle of the picture an object reaches, in halves of its width. */
+static double beside(const abbe_camera *c, const abbe_object *object) {
+  double view[3], right[3], most = 0;
+  abbe_vector_subtract(c->target, c->eye, view);
+  abbe_vector_normalise(view);
+  abbe_vector_cross(view, c->up, right);
+  abbe_vector_normalise(right);
+  for (size_t i = 0; i < object->mesh.vertex_count; i++) {
+    double p[3];
+    abbe_vector_subtract(object->mesh.position[i], c->eye, p);
+    most = fmax(most, fabs(abbe_vector_dot(p, right)) / abbe_vector_dot(p, view));
+  }
+  return most * (double)c->height / ((double)c->width * tan(0.5 * c->fov_y_rad));
+}
+
+/* They fill the picture that is asked for, however wide it is. */
+TEST(the_camera_knows_the_pictures_size) {
+  static const size_t sizes[][2] = {{400, 100}, {128, 128}, {90, 160}};
+  const char *const more[] = {OVAL, QUARTZ};
+  for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+    const abbe_studio studio = {
+        .more = more, .more_count = 2, .columns = sizes[i][0], .rows = sizes[i][1]};
+    FILLED(abbe_scene, scene, load(QUARTZ, &studio, &scene));
+    assert_int_equal(scene.camera.width, sizes[i][0]);
+    assert_int_equal(scene.camera.height, sizes[i][1]);
+    double most = 0;
+    for (size_t k = 1; k <= 3; k++)
+      most = fmax(most, beside(&scene.camera, called(&scene, printed("stone %zu", k))));
+    assert_true(most > (i == 0 ? 0.2 : 0.8) && most <= 0.85 + 1e-3);
+  }
+}
+
 TEST(a_mesh_has_its_files_size) {
   static const struct {
     const char *path;
