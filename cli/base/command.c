@@ -219,8 +219,17 @@ const char *abbe_command_target(const char *program, const char *option, const c
   static const char *const known[] = {".exr",  ".png",  ".jpg", ".jpeg", ".svg", ".tif",
                                       ".tiff", ".bmp",  ".gif", ".avif", ".hdr", ".pfm",
                                       ".webp", ".json", ".csv", ".yaml", ".pov"};
+  static const char *const films[] = {".mp4", ".webm", ".mov", ".mkv", ".avi"};
   const char *dot = strrchr(text, '.');
   if (dot == NULL || strcasecmp(dot, ending) == 0) return text;
+  for (size_t i = 0; i < sizeof films / sizeof *films; i++) {
+    if (strcasecmp(dot, films[i]) != 0) continue;
+    fprintf(stderr,
+            "%s: %s '%s' is a film, which ffmpeg makes of numbered frames; a .webp or .gif "
+            "moves by itself\n",
+            program, option, text);
+    exit(ABBE_EXIT_USAGE);
+  }
   for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
     if (strcasecmp(dot, known[i]) != 0) continue;
     bool looks = strcmp(ending, ".exr") == 0 && strcmp(option, "-o") == 0;

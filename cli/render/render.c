@@ -115,7 +115,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->series.stated = q->screen.stated || q->png == NULL;
     abbe_frame_series_check(&q->series, q->png, state);
     if (q->series.merge && q->png == NULL)
-      argp_error(state, "--merge makes a picture that moves: give --png FILE.png");
+      argp_error(state,
+                 "--merge makes a picture that moves: give -o FILE.webp, FILE.gif or FILE.png");
     if (q->errors.mean && q->aovs)
       argp_error(state, "--mean has no --aovs: they are of one picture, not of the mean");
     return 0;

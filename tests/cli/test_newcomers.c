@@ -51,6 +51,10 @@ static const struct wrong {
      "--png writes a .png file, and 'round.tif' ends like another kind; name it 'round.png'", 2},
     {QUARTZ RENDER "round.asc -o round.tif",
      "name it 'round.exr', or take --png for a picture to look at", 2},
+    {QUARTZ RENDER "round.asc --turntable 8 -o round.mp4",
+     "-o 'round.mp4' is a film, which ffmpeg makes of numbered frames; a .webp or .gif moves by "
+     "itself",
+     2},
     {QUARTZ RENDER "round.asc -o round.gif --png round.png",
      "'round.gif' and 'round.png' are two pictures for a display; name one", 2},
     {QUARTZ RENDER "round.asc -o round.gif --alpha",
