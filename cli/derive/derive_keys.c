@@ -93,7 +93,9 @@ abbe_result abbe_derive_move(request *q, size_t k, const abbe_scene *scene,
   out->shift[0] = less(&out->shift[1]);
   if (!material) {
     ABBE_TRY(read_value(q, scene, q->key[k], &q->value[k], error));
-    out->step = fmax(1e-5 * fabs(q->value[k]), 1e-6);
+    /* At a ball's outline reflectance is 1 less the root of the distance: so is what a step misses.
+     */
+    out->step = fmax(1e-7 * fabs(q->value[k]), 1e-9);
     if (q->value[k] != 0) out->step = fmin(out->step, 1e-3 * fabs(q->value[k]));
   }
   for (int s = 0; s < 2; s++) {

@@ -53,6 +53,10 @@
   "- {name: plate, shape: rectangle, width: " width ", height: 0.05, reflectance: 0.5,\n"          \
   "   transform: [{translate: [0, 0, " z "]}]}\n"
 
+#define STRIP                                                                                      \
+  "- {name: strip, shape: rectangle, width: %.17g, height: 20, reflectance: 0.5,\n"                \
+  "   transform: [{translate: [0, 0, -0.1]}]}\n"
+
 /* What a ray's answer is a function of, beside what it is derived by. */
 typedef struct setting {
   double n, lambda_nm, n_d, v_d, thickness, incidence, apex, radius, height, absorption, area;
@@ -362,6 +366,40 @@ static double shadow_by_width(const abbe_material *glass) {
   return -plate_by_width(glass);
 }
 
+/* How much of light from above through a ball, or off it, falls onto a plate of a width below it:
+ * of rays that go on at an angle to where they came from the line is as far from the middle as
+ * before.
+ */
+static double below_ball(double n, double width) {
+  enum { RAYS = 100000 };
+  const double below = 0.1, half = 0.5 * width, reach = 10; /* m: the plate's, to both sides */
+  double sum = 0;
+  for (int k = 0; k < 2 * RAYS; k++) {
+    const double cosine = (k / 2 + 0.5) / RAYS, i = acos(cosine), sine = sin(i);
+    const double off = abbe_closed_form_fresnel(i, n);
+    const double turn = k % 2 ? 2 * i - ABBE_PI : 2 * (i - asin(sine / n));
+    if (!(cos(turn) > 0)) continue;
+    const double from = 0.05 * sine;
+    const double at = fabs((from - below * sin(turn)) / cos(turn));
+    if (at > reach) continue;
+    const double share = at > half ? asin(half / at) / (0.5 * ABBE_PI) : 1;
+    sum += cosine / RAYS * share * (k % 2 ? off : (1 - off) * (1 - off));
+  }
+  return 2 * ABBE_PI * 0.05 * 0.05 * sum;
+}
+
+static double below_ball_by_width(const abbe_material *glass) {
+  double sum = 0, y = 0;
+  for (int nm = 380; nm <= 780; nm += 10) {
+    double xyz[3];
+    const double n = abbe_dispersion_n(&glass->dispersion, nm);
+    abbe_observer_xyz(nm, xyz);
+    y += xyz[1];
+    sum += xyz[1] * (below_ball(n, 0.06 + 1e-4) - below_ball(n, 0.06 - 1e-4)) / 2e-4;
+  }
+  return sum / y;
+}
+
 static double passed_by_b(const abbe_material *glass) {
   return 0.05 * 0.05 * passed_slope(glass, ABBE_DERIVATIVE_FLUX);
 }
@@ -381,6 +419,8 @@ static const edge_row edges[] = {
      ABBE_DERIVATIVE_FLUX, plate_by_width},
     {"light through a pane by the width of a plate before it", "W/m",
      HEAD PANE("%.17g", "0.1") FLOOR, 0.05, ABBE_DERIVATIVE_FLUX, shadow_by_width},
+    {"light below a ball by the width of a plate there", "W/m", HEAD BALL("0.05") STRIP, 0.06,
+     ABBE_DERIVATIVE_FLUX, below_ball_by_width},
     {"Y of light through a pane by Cauchy's B", "W/um2", HEAD PANE("0.05", "-0.1"), 0,
      ABBE_DERIVATIVE_FLUX, passed_by_b},
     {"its chromaticity x by B", "1/um2", HEAD PANE("0.05", "-0.1"), 0, ABBE_DERIVATIVE_CHROMA_X,
@@ -420,7 +460,7 @@ static abbe_result add_edge(abbe_known_run *run, const edge_row *row, abbe_error
                                      .key = &key,
                                      .sampling = &sampling,
                                      .lines = 2048,
-                                     .points = 4,
+                                     .points = 32,
                                      .interfaces = INTERFACES,
                                      .seed = (uint32_t)run->options->seed,
                                      .threads = run->options->threads};

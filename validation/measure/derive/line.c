@@ -112,19 +112,28 @@ static double find_zero(const abbe_line *l, double low, double high, const abbe_
   return low + (high - low) * 0.5;
 }
 
+/* Whether what `known` has met is met at that place, and nothing else. */
+static bool meets_same(const abbe_line *l, double t, abbe_specular_tree *known,
+                       abbe_specular_tree *out) {
+  known->checks = true;
+  look(l, 0, t, known, out);
+  known->checks = false;
+  return !out->failed && out->steps == known->steps && out->shadows == known->shadows;
+}
+
 /* Whether nothing jumps between both ends of a span but what is too faint. Leaves the tree of the
- * first end, and of the other what has met the same up to where it meets something else. */
+ * first end, and of the other what has met the same up to where it meets something else. Paths that
+ * are too faint at the first end alone are followed from the other one. */
 static bool is_smooth(const abbe_line *l, double low, double high) {
-  abbe_specular_tree *below = &l->tree[1], *above = &l->tree[2];
+  abbe_specular_tree *below = &l->tree[1], *above = &l->tree[2], *back = &l->tree[3];
   look(l, 0, low, NULL, below);
   if (!below->whole) {
     look(l, 0, high, NULL, above);
     return false;
   }
-  below->checks = true;
-  look(l, 0, high, below, above);
-  below->checks = false;
-  return !above->failed && above->steps == below->steps && above->shadows == below->shadows;
+  if (!meets_same(l, high, below, above)) return false;
+  look(l, 0, high, NULL, back);
+  return back->whole && meets_same(l, low, back, &l->tree[4]);
 }
 
 /* Where the jump of a span that is not smooth is likely to be; else NAN. */

@@ -23,7 +23,7 @@ typedef struct abbe_line_sums {
   double jumps, lost; /* of what jumps, and of jumps whose motion was not found */
 } abbe_line_sums;
 
-enum { ABBE_LINE_TREES = 4 };
+enum { ABBE_LINE_TREES = 5 };
 
 typedef struct abbe_line abbe_line;
 struct abbe_line {
