@@ -184,7 +184,7 @@ abbe_result abbe_gem_derive_make(const abbe_gem_derive_desc *q, abbe_gem_derive_
   ABBE_TRY(abbe_gem_slope_make(&q->base->gem, q->weights, &desc, &is, error));
   out[0] = is.value;
   for (size_t k = 0; k < q->keys; k++) {
-    bool changes;
+    bool changes = false;
     ABBE_TRY(find_change(q->base, &q->key[k], c, &changes, error));
     out[1 + k] = abbe_gem_slope_by(&is, &(abbe_gem_change){.plane = (const double(*)[4])c->plane,
                                                            .n = c->n,
