@@ -366,16 +366,14 @@ static double shadow_by_width(const abbe_material *glass) {
   return -plate_by_width(glass);
 }
 
-/* How much of light from above through a ball, or off it, falls onto a plate of a width below it:
- * of rays that go on at an angle to where they came from the line is as far from the middle as
- * before.
- */
+/* How much of light from above through a ball, or off it, falls onto a plate of a width below it: a
+ * ray that is turned passes the ball's middle at the distance at which it came. */
 static double below_ball(double n, double width) {
-  enum { RAYS = 100000 };
+  enum { STEPS = 100000 };
   const double below = 0.1, half = 0.5 * width, reach = 10; /* m: the plate's, to both sides */
   double sum = 0;
-  for (int k = 0; k < 2 * RAYS; k++) {
-    const double cosine = (k / 2 + 0.5) / RAYS, i = acos(cosine), sine = sin(i);
+  for (int k = 0; k < 2 * STEPS; k++) {
+    const double cosine = (k / 2 + 0.5) / STEPS, i = acos(cosine), sine = sin(i);
     const double off = abbe_closed_form_fresnel(i, n);
     const double turn = k % 2 ? 2 * i - ABBE_PI : 2 * (i - asin(sine / n));
     if (!(cos(turn) > 0)) continue;
@@ -383,7 +381,7 @@ static double below_ball(double n, double width) {
     const double at = fabs((from - below * sin(turn)) / cos(turn));
     if (at > reach) continue;
     const double share = at > half ? asin(half / at) / (0.5 * ABBE_PI) : 1;
-    sum += cosine / RAYS * share * (k % 2 ? off : (1 - off) * (1 - off));
+    sum += cosine / STEPS * share * (k % 2 ? off : (1 - off) * (1 - off));
   }
   return 2 * ABBE_PI * 0.05 * 0.05 * sum;
 }
