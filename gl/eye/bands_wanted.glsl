@@ -54,19 +54,6 @@ float sphere_spread(Hit front, vec3 d, vec2 ends) {
 }
 #endif
 
-// Whether the fire of a faceted stone shows: colours that facets bring beside each other are those which it keeps. One that
-// absorbs most of the light along its width has few, and the samples of a pixel have wavelengths between each other's.
-bool keeps_colours_apart(int first, int last) {
-#if defined(SHARES_SPECTRUM) && defined(BAND_PARTS)
-  const float MOST_ABSORBED = 0.75;
-  float kept = 0.0, width = 2.0 * refractors[refractor].sphere.w;
-  for (int i = first; i <= last; i++) kept += bands[i].weight_n.y * exp(-width * bands[i].surface.x);
-  return kept > 1.0 - MOST_ABSORBED;
-#else
-  return true;
-#endif
-}
-
 // As many bands as the spread needs, one for every pixel and a half of it. For meshes it is
 // estimated from the first interface alone; in facets inner reflections spread light further than
 // the first exit shows, so a convex solid gets a band for each wavelength.
@@ -75,7 +62,7 @@ float wanted_bands(Hit front, vec3 d, int first, int last) {
 #ifdef MIRRORS
   if (is_mirror(refractor)) return 1e9;
 #endif
-  if (model == MODEL_CONVEX) return keeps_colours_apart(first, last) ? 1e9 : 4.0;
+  if (model == MODEL_CONVEX) return 1e9;
   float least;
   vec2 ends = ends_n(first, last, least);
   float apart = abs(ends.x - ends.y) / ends.y;

@@ -43,12 +43,10 @@ void abbe_path_limits_choose(const abbe_scene *scene, const abbe_render_desc *as
   const bool few = asked != NULL && asked->exits > 0 && asked->exits < ABBE_PLAN_EXITS;
   const bool eye_goes_on = !thesis && (!plan->layers || plan->convex) && !few;
   plan->eye_exits = eye_goes_on ? eye_exits(plan) : plan->desc.exits;
-  const bool share_is_open = !thesis && (asked == NULL || asked->energy_share == 0);
   plan->eye_share = plan->desc.energy_share;
-  if (!plan->multi_refractor_paths)
-    plan->eye_share =
-        share_is_open ? ABBE_PLAN_EYE_SHARE : fmin(plan->eye_share, ABBE_PLAN_EYE_SHARE);
-  if (share_is_open && plan->mirror_count > 0) plan->eye_share = ABBE_PLAN_MIRROR_SHARE;
+  if (!plan->multi_refractor_paths) plan->eye_share = fmin(plan->eye_share, ABBE_PLAN_EYE_SHARE);
+  const bool share_is_open = asked == NULL || asked->energy_share == 0;
+  if (plan->mirror_count > 0 && share_is_open && !thesis) plan->eye_share = ABBE_PLAN_MIRROR_SHARE;
   plan->hit_slots = plan->multi_refractor_paths ? waves * MULTI_REFRACTOR_SLOTS
                                                 : waves * plan->desc.exits + (thesis ? 0 : 1);
   if (abbe_plan_no_refraction(plan) != NULL)

@@ -78,7 +78,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 /* Exits of the camera's rays through exact surfaces, the share of one solid alone; what light is
  * left inside then is too little to show. */
 #define ABBE_PLAN_EYE_EXITS 256
-#define ABBE_PLAN_EYE_SHARE 0.02
+#define ABBE_PLAN_EYE_SHARE 0.005
 /* The same beside a mirror: below the 4 % that glass reflects, which mirrors show. */
 #define ABBE_PLAN_MIRROR_SHARE 0.03
 

@@ -95,7 +95,7 @@ typedef struct pair {
       RUNS(PASS_EYE_FRONT, "the pixels that show a refractor"),                                    \
       RESTS(PASS_EYE_BACK, "every refractor has an exact surface"),                                \
       RUNS(PASS_EYE_ADAPTIVE, "4 x 4 rays for a sample of a receiver where its light bends"),      \
-      RUNS(PASS_EYE_REFRACTION, "until less than 0.02 of its light is left, 256 exits at most"),   \
+      RUNS(PASS_EYE_REFRACTION, "until less than 0.005 of its light is left, 256 exits at most"),  \
       RUNS(PASS_EYE_PICTURE, "2 x 2 samples a pixel"), RESTS(CHOICE_TEXTURES, "none"), colours,    \
       RESTS(CHOICE_LIGHT_SIZE, "none"), RESTS(CHOICE_ENVIRONMENT, "none"),
 #define UNLIT                                                                                      \
@@ -211,7 +211,7 @@ static const pair pairs[] = {
               "followed until less than 0.01 of the light is left, 4 exits at most"),
          RUNS(PASS_LIGHT_BACK, "a mesh without an exact surface ends at its back layer"),
          RUNS(PASS_EYE_BACK, "a mesh without an exact surface ends at its back layer"),
-         RUNS(PASS_EYE_REFRACTION, "until less than 0.02 of its light is left, 4 exits at most"),
+         RUNS(PASS_EYE_REFRACTION, "until less than 0.005 of its light is left, 4 exits at most"),
          END}),
     FIELDS(
         "a mesh with a hole for the ball", ball, CAMERA POINT_LIGHT FLOOR TORUS("crown"), {0},
