@@ -1,6 +1,7 @@
 /* OpenEXR files of every make, read by Abbe and by OpenEXR's own C++ library, and the other way. */
 #include "tests/check.h"
 #include "tests/colorimetry/image/exr_library.h"
+#include "tests/colorimetry/image/exr_parts_file.h"
 #include "tests/random.h"
 
 #include "base/file.h"
@@ -166,25 +167,6 @@ TEST(younger_codecs) {
   }
 }
 
-enum { PARTS = 4 };
-static const exr_library_file parts[PARTS] = {
-    {.part = "depth", .channels = 1, .name = {"Z"}, .type = {2}, .codec = EXR_COMPRESSION_ZIPS},
-    {.part = "grey", .channels = 1, .name = {"Y"}, .type = {2}, .codec = EXR_COMPRESSION_PIZ},
-    {.part = "rgb left", .channels = 3, .name = {"B", "G", "R"}, .type = {1, 1, 1}, .tile = {8, 8}},
-    {.part = "rgb right", .channels = 3, .name = {"B", "G", "R"}, .type = {1, 1, 1}}};
-
-static void write_parts(int count) {
-  exr_library_file f[PARTS];
-  char why[300];
-  for (int i = 0; i < count; i++) {
-    f[i] = parts[i];
-    f[i].data_window[2] = 20 + i;
-    f[i].data_window[3] = 30 - i;
-    f[i].display_window[2] = f[i].display_window[3] = 29;
-  }
-  if (!exr_library_write_parts(path, f, count, why, sizeof why)) fail_msg("%s", why);
-}
-
 /* mark: "" or "#PART". */
 static void reads_part(const char *mark, int part, const char *says) {
   const char *name = printed("%s%s", path, mark);
@@ -195,12 +177,12 @@ static void reads_part(const char *mark, int part, const char *says) {
 }
 
 TEST(parts) {
-  write_parts(PARTS);
+  write_parts(path, PARTS);
   reads_part("", 2, "3 'rgb left' of 4"); /* the first with colours */
   reads_part("#depth", 0, "1 'depth' of 4");
   reads_part("#2", 1, "2 'grey' of 4");
   reads_part("#rgb right", 3, "4 'rgb right' of 4");
-  write_parts(2);
+  write_parts(path, 2);
   reads_part("", 1, "2 'grey' of 2");
   OWNED(abbe_image, image) = {0};
   char name[200];

@@ -3,6 +3,7 @@
  * wrongly of them. */
 #include "tests/check.h"
 #include "tests/colorimetry/image/exr_library.h"
+#include "tests/colorimetry/image/exr_parts_file.h"
 
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
@@ -17,25 +18,6 @@ static exr_library_file coloured(int codec, int side) {
   exr_library_file f = {.channels = 3, .type = {1, 1, 1}, .name = {"B", "G", "R"}, .codec = codec};
   f.data_window[2] = f.display_window[2] = f.data_window[3] = f.display_window[3] = side - 1;
   return f;
-}
-
-enum { PARTS = 4 };
-static const exr_library_file parts[PARTS] = {
-    {.part = "depth", .channels = 1, .name = {"Z"}, .type = {2}, .codec = EXR_COMPRESSION_ZIPS},
-    {.part = "grey", .channels = 1, .name = {"Y"}, .type = {2}, .codec = EXR_COMPRESSION_PIZ},
-    {.part = "rgb left", .channels = 3, .name = {"B", "G", "R"}, .type = {1, 1, 1}, .tile = {8, 8}},
-    {.part = "rgb right", .channels = 3, .name = {"B", "G", "R"}, .type = {1, 1, 1}}};
-
-static void write_parts(int count) {
-  exr_library_file f[PARTS];
-  char why[300];
-  for (int i = 0; i < count; i++) {
-    f[i] = parts[i];
-    f[i].data_window[2] = 20 + i;
-    f[i].data_window[3] = 30 - i;
-    f[i].display_window[2] = f[i].display_window[3] = 29;
-  }
-  if (!exr_library_write_parts(path, f, count, why, sizeof why)) fail_msg("%s", why);
 }
 
 /* A level's pixels, all or those of a window: here lesser levels show the corner of the full one.
@@ -89,7 +71,7 @@ TEST(levels_of_tiles) {
     assert_int_equal(levels.count, 1);
     abbe_exr_close(reader);
   }
-  write_parts(2);
+  write_parts(path, 2);
   abbe_exr_reader *reader = NULL;
   abbe_image none;
   abbe_exr_levels levels;
@@ -202,7 +184,7 @@ TEST(what_a_file_says_wrongly) {
   patch("screenWindowWidth", 17, 0, 'x');
   REFUSED(ABBE_UNSUPPORTED, "an unknown compression (number 99)",
           abbe_exr_read(path, &image, &error));
-  write_parts(2);
+  write_parts(path, 2);
   patch("name\0string", 11, 1, 'o'); /* parts without a name */
   REFUSED(ABBE_PARSE, "name", abbe_exr_read(path, &image, &error));
 }
@@ -213,7 +195,7 @@ TEST(a_codec_of_one_part) {
   FREED char *data = NULL;
   size_t size = 0;
   abbe_image image = {0};
-  write_parts(PARTS);
+  write_parts(path, PARTS);
   OK(abbe_file_read(path, 1 << 20, &data, &size, &error));
   char *at = data;
   for (int i = 0; i < 3; i++) {
