@@ -41,12 +41,13 @@ static bool read_factor(const char **text, bool below, int power[UNITS], int *te
       unit = u;
   }
   c += length;
-  c += *c == '^';
+  const bool raised = *c == '^';
+  c += raised;
   const bool negative = *c == '-';
   c += negative;
   if (*c >= '1' && *c <= '9')
     exponent = *c++ - '0';
-  else if (negative || c[-1] == '^')
+  else if (negative || raised)
     return false;
   if (negative != below) exponent = -exponent;
   if (unit == UNITS) return false;

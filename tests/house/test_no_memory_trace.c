@@ -1,5 +1,5 @@
-/* Every allocation failing in turn: the tracer and its checkpoints, comparisons, outlines.
- */
+/* Every allocation failing in turn: the tracer and its checkpoints, caustic volumes, comparisons,
+ * outlines. */
 #include "tests/faults/operations.h"
 #include "tests/fontconfig.h"
 
@@ -8,6 +8,7 @@
 #include "scenes/import/scene_file.h"
 #include "validation/lab/known/known_answers.h"
 #include "validation/lab/known/known_light.h"
+#include "validation/lab/volume_fill.h"
 #include "validation/measure/compare.h"
 #include "validation/measure/file_comparison.h"
 #include "validation/trace/denoise.h"
@@ -71,6 +72,55 @@ static abbe_result checkpoint(abbe_error *error) {
 static abbe_result merge(abbe_error *error) {
   const char *path = operation_path("part.checkpoint");
   return abbe_checkpoint_merge(traced, &path, 1, NULL, error);
+}
+
+/* ---- caustic volumes ---- */
+
+static void digest_volume(const abbe_caustic_volume *v) {
+  const abbe_light_exits *e = &v->exits;
+  if (v->kind == ABBE_VOLUME_EXITS) {
+    digest(&e->points, sizeof e->points);
+    digest(e->exit, e->count * sizeof *e->exit);
+  } else {
+    digest(v->value,
+           v->nodes.count * v->region.cells * abbe_caustic_volume_channels(v) * sizeof *v->value);
+  }
+}
+
+/* Filled with a checkpoint after each node, written, and read again. */
+static abbe_result volume_of(const abbe_volume_fill_desc *desc, abbe_error *error) {
+  const char *path = operation_path("volume.exr");
+  OWNED(abbe_caustic_volume, volume) = {0};
+  OWNED(abbe_caustic_volume, back) = {0};
+  abbe_volume_fill_statistics done;
+  abbe_volume_fill_desc own = *desc;
+  own.checkpoint = operation_path("volume.checkpoint");
+  abbe_result result = abbe_volume_fill(&shared, &own, &volume, &done, error);
+  if (result == ABBE_OK) result = abbe_volume_file_write(path, &volume, error);
+  if (result == ABBE_OK) result = abbe_volume_file_read(path, &back, error);
+  if (result == ABBE_OK) digest_volume(&volume);
+  if (result == ABBE_OK) digest_volume(&back);
+  return result;
+}
+
+static abbe_result volume_values(abbe_error *error) {
+  return volume_of(&(abbe_volume_fill_desc){.object = 2,
+                                            .kind = ABBE_VOLUME_PRINTED,
+                                            .nodes = 12,
+                                            .region = {.kind = ABBE_REGION_GRID, .side = 2},
+                                            .photons = 64,
+                                            .passes = 2,
+                                            .threads = 1},
+                   error);
+}
+
+static abbe_result volume_exits(abbe_error *error) {
+  return volume_of(&(abbe_volume_fill_desc){.object = 2,
+                                            .nodes = 12,
+                                            .exits = 8,
+                                            .region = {.kind = ABBE_REGION_GRID, .side = 2},
+                                            .threads = 1},
+                   error);
 }
 
 /* ---- comparisons ---- */
@@ -158,6 +208,12 @@ GROUP(setup, teardown);
 TEST(traces) {
   static const operation list[] = {
       {"trace", trace, 20}, {"checkpoint", checkpoint, 0}, {"merge", merge, 0}};
+  operation_check_all(list, sizeof list / sizeof *list);
+}
+
+TEST(caustic_volumes) {
+  static const operation list[] = {{"volume", volume_values, 60},
+                                   {"volume of rays", volume_exits, 12}};
   operation_check_all(list, sizeof list / sizeof *list);
 }
 
