@@ -163,13 +163,14 @@ static abbe_result add_slopes(const request *q, const work *w, abbe_lib_gem_repo
                                      .head_rad = q->head_rad,
                                      .lines = 256,
                                      .threads = q->threads};
-  for (size_t m = 0; m < 3 && keys > 0 && result == ABBE_OK; m++) {
-    abbe_gem_number number[3];
-    result = abbe_gem_derive_make(&desc, measures[m], number, NULL, error);
-    for (size_t k = 0; k < keys && result == ABBE_OK; k++)
-      r->row[r->count++] = (abbe_gem_judgement_row){
-          .name = rows[side[k]][m][0], .text = rows[side[k]][m][1], .number = number[1 + k]};
-  }
+  abbe_gem_number number[3 * 3];
+  if (keys > 0 && result == ABBE_OK)
+    result = abbe_gem_derive_make(&desc, measures, 3, number, NULL, error);
+  for (size_t m = 0; m < 3 && result == ABBE_OK; m++)
+    for (size_t k = 0; k < keys; k++)
+      r->row[r->count++] = (abbe_gem_judgement_row){.name = rows[side[k]][m][0],
+                                                    .text = rows[side[k]][m][1],
+                                                    .number = number[m * (1 + keys) + 1 + k]};
   abbe_gem_derive_stone_free(&base);
   for (size_t k = 0; k < 2; k++) free_key(&key[k]);
   return result;

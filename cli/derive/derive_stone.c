@@ -4,6 +4,7 @@
 #include "base/maths.h"
 #include "base/text.h"
 #include "cli/base/command.h"
+#include "cli/base/progress.h"
 #include "validation/measure/gem/gem_derive.h"
 
 #include <cjson/cJSON.h>
@@ -19,7 +20,7 @@ typedef struct work {
   abbe_weights weights;
   abbe_gem_derive_stone base;
   abbe_gem_derive_key key[ABBE_DERIVE_MOST_KEYS];
-  abbe_gem_number number[MEASURES][ROWS];
+  abbe_gem_number number[MEASURES * ROWS]; /* [measures][1 + keys] */
   bool felt[ABBE_DERIVE_MOST_KEYS];
 } work;
 
@@ -66,16 +67,22 @@ static abbe_result measure(const abbe_derive_request *q, const abbe_scene *scene
   ABBE_TRY(abbe_gem_derive_stone_make(&scene->object[w->object], NULL, &w->wavelengths, &w->base,
                                       error));
   for (size_t k = 0; k < q->keys; k++) ABBE_TRY(make_key(&key[k], scene, w, &w->key[k], error));
+  abbe_progress progress;
   const abbe_gem_derive_desc desc = {.base = &w->base,
                                      .weights = &w->weights,
                                      .keys = q->keys,
                                      .key = w->key,
                                      .head_rad = ABBE_GEM_HEAD_DEG * ABBE_DEGREE,
                                      .lines = q->lines,
-                                     .threads = q->work.threads};
-  for (int m = 0; m < MEASURES; m++)
-    ABBE_TRY(abbe_gem_derive_make(&desc, (abbe_gem_derive_measure)m, w->number[m], w->felt, error));
-  return ABBE_OK;
+                                     .threads = q->work.threads,
+                                     .progress = abbe_progress_update,
+                                     .user = &progress};
+  abbe_gem_derive_measure all[MEASURES];
+  for (int m = 0; m < MEASURES; m++) all[m] = (abbe_gem_derive_measure)m;
+  abbe_progress_begin(&progress, "deriving", q->quiet);
+  const abbe_result result = abbe_gem_derive_make(&desc, all, MEASURES, w->number, w->felt, error);
+  abbe_progress_end(&progress);
+  return result;
 }
 
 static void print(const abbe_derive_request *q, const work *w) {
@@ -83,7 +90,7 @@ static void print(const abbe_derive_request *q, const work *w) {
   for (size_t row = 0; row <= q->keys; row++)
     for (int m = 0; m < MEASURES; m++) {
       const char *by = m > 0 ? "" : row == 0 ? "(as it is)" : q->key[row - 1];
-      const abbe_gem_number n = w->number[m][row];
+      const abbe_gem_number n = w->number[(size_t)m * (1 + q->keys) + row];
       printf("%-34s %-10s %13.5g %11.2g  %s%s\n", by,
              abbe_gem_derive_measure_name((abbe_gem_derive_measure)m), n.value, n.error,
              abbe_gem_derive_measure_unit((abbe_gem_derive_measure)m),
@@ -100,7 +107,8 @@ static abbe_result print_json(const abbe_derive_request *q, const work *w, abbe_
     cJSON_AddItemToArray(list, one);
     if (row > 0) cJSON_AddStringToObject(one, "by", q->key[row - 1]);
     for (int m = 0; m < MEASURES; m++) {
-      const double e[2] = {w->number[m][row].value, w->number[m][row].error};
+      const double e[2] = {w->number[(size_t)m * (1 + q->keys) + row].value,
+                           w->number[(size_t)m * (1 + q->keys) + row].error};
       cJSON_AddItemToObject(one, abbe_gem_derive_measure_name((abbe_gem_derive_measure)m),
                             cJSON_CreateDoubleArray(e, 2));
     }

@@ -70,7 +70,7 @@ static abbe_result follow(work *w, const place *p, abbe_gem_stone *stone, abbe_g
                                     .threads = s->view.threads};
   ABBE_TRY(make_stone(w, &p->cut, &p->polyhedron, stone, error));
   w->evaluations++;
-  const abbe_result result = abbe_gem_slope_make(stone, w->weights, &desc, slope, error);
+  const abbe_result result = abbe_gem_slope_make(stone, w->weights, &desc, 1, slope, error);
   if (result != ABBE_OK) abbe_gem_stone_free(stone);
   return result;
 }

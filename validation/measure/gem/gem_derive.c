@@ -162,35 +162,47 @@ static abbe_result find_change(const abbe_gem_derive_stone *base, const abbe_gem
   return ABBE_OK;
 }
 
-abbe_result abbe_gem_derive_make(const abbe_gem_derive_desc *q, abbe_gem_derive_measure measure,
+static abbe_result derive(const abbe_gem_derive_desc *q, const abbe_gem_slope *slope,
+                          size_t measures, abbe_gem_number *out, bool *felt, abbe_error *error) {
+  const size_t waves = q->base->gem.wavelengths;
+  ABBE_FREED change *c = calloc(1, sizeof *c);
+  ABBE_FREED double *room = calloc(2 * waves, sizeof *room);
+  if (c == NULL || room == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a stone's derivatives");
+  c->n = room;
+  c->loss = room + waves;
+  for (size_t m = 0; m < measures; m++) out[m * (1 + q->keys)] = slope[m].value;
+  for (size_t k = 0; k < q->keys; k++) {
+    bool changes = false;
+    ABBE_TRY(find_change(q->base, &q->key[k], c, &changes, error));
+    const abbe_gem_change by = {
+        .plane = (const double(*)[4])c->plane, .n = c->n, .loss = c->loss, .spread = c->spread};
+    for (size_t m = 0; m < measures; m++)
+      out[m * (1 + q->keys) + 1 + k] = abbe_gem_slope_by(&slope[m], &by);
+    if (felt != NULL) felt[k] = changes;
+  }
+  return ABBE_OK;
+}
+
+abbe_result abbe_gem_derive_make(const abbe_gem_derive_desc *q,
+                                 const abbe_gem_derive_measure *measure, size_t measures,
                                  abbe_gem_number *out, bool *felt, abbe_error *error) {
-  const abbe_gem_slope_desc desc = {.measure = amounts[measure],
-                                    .fire = measure == ABBE_GEM_DERIVE_FIRE,
+  abbe_gem_slope_desc desc[ABBE_GEM_SLOPE_MOST];
+  abbe_gem_slope slope[ABBE_GEM_SLOPE_MOST];
+  for (size_t m = 0; m < measures; m++)
+    desc[m] = (abbe_gem_slope_desc){.measure = amounts[measure[m]],
+                                    .fire = measure[m] == ABBE_GEM_DERIVE_FIRE,
                                     .spread = q->base->spread,
                                     .head_rad = q->head_rad,
                                     .soft_rad = SOFT,
                                     .least_share = (double)ABBE_GEM_LEAST_SHARE,
                                     .meetings = ABBE_GEM_SLOPE_MEETINGS,
                                     .lines = q->lines / ABBE_GEM_SLOPE_REPEATS,
-                                    .threads = q->threads};
-  const size_t waves = q->base->gem.wavelengths;
-  ABBE_FREED change *c = calloc(1, sizeof *c);
-  ABBE_FREED double *room = calloc(2 * waves, sizeof *room);
-  ABBE_OWNED(abbe_gem_slope, is) = {0};
-  if (c == NULL || room == NULL)
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a stone's derivatives");
-  c->n = room;
-  c->loss = room + waves;
-  ABBE_TRY(abbe_gem_slope_make(&q->base->gem, q->weights, &desc, &is, error));
-  out[0] = is.value;
-  for (size_t k = 0; k < q->keys; k++) {
-    bool changes = false;
-    ABBE_TRY(find_change(q->base, &q->key[k], c, &changes, error));
-    out[1 + k] = abbe_gem_slope_by(&is, &(abbe_gem_change){.plane = (const double(*)[4])c->plane,
-                                                           .n = c->n,
-                                                           .loss = c->loss,
-                                                           .spread = c->spread});
-    if (felt != NULL) felt[k] = changes;
-  }
-  return ABBE_OK;
+                                    .threads = q->threads,
+                                    .progress = q->progress,
+                                    .user = q->user};
+  ABBE_TRY(abbe_gem_slope_make(&q->base->gem, q->weights, desc, measures, slope, error));
+  const abbe_result result = derive(q, slope, measures, out, felt, error);
+  for (size_t m = 0; m < measures; m++) abbe_gem_slope_free(&slope[m]);
+  return result;
 }

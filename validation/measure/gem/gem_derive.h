@@ -64,14 +64,17 @@ typedef struct abbe_gem_derive_desc {
   size_t keys;
   const abbe_gem_derive_key *key; /* [keys] */
   double head_rad;
-  size_t lines;   /* in all */
-  size_t threads; /* 0: all */
+  size_t lines;                              /* in all */
+  size_t threads;                            /* 0: all */
+  bool (*progress)(void *user, double done); /* false stops; or NULL */
+  void *user;
 } abbe_gem_derive_desc;
 
-/* One measure: out[0] is its value, out[1 + k] its derivative by key k; felt[keys] (may be NULL):
- * whether the stone changes with the key at all. ABBE_UNSUPPORTED, with the key's name, where faces
- * come or go; errors of abbe_gem_slope_make. */
-abbe_result abbe_gem_derive_make(const abbe_gem_derive_desc *desc, abbe_gem_derive_measure measure,
+/* A measure's row of out[measures][1 + keys] has its value and its derivatives by the keys;
+ * felt[keys] (may be NULL): whether the stone changes with the key at all. ABBE_UNSUPPORTED, with
+ * the key's name, where faces come or go; errors of abbe_gem_slope_make. */
+abbe_result abbe_gem_derive_make(const abbe_gem_derive_desc *desc,
+                                 const abbe_gem_derive_measure *measure, size_t measures,
                                  abbe_gem_number *out, bool *felt, abbe_error *error);
 
 #endif

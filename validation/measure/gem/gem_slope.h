@@ -18,7 +18,7 @@
 #include "colorimetry/weights.h"
 #include "validation/measure/gem/gem_light.h"
 
-enum { ABBE_GEM_SLOPE_REPEATS = 8, ABBE_GEM_SLOPE_MEETINGS = 64 };
+enum { ABBE_GEM_SLOPE_REPEATS = 8, ABBE_GEM_SLOPE_MEETINGS = 64, ABBE_GEM_SLOPE_MOST = 8 };
 
 typedef struct abbe_gem_slope_desc {
   abbe_gem_amount measure; /* ISO, COS, GEMRAY_*, RETURN or DOWN; AMOUNT_COUNT: fire alone */
@@ -33,6 +33,8 @@ typedef struct abbe_gem_slope_desc {
   size_t meetings;
   size_t lines;   /* of each repeat, which has a direction of its own; 0: 12 */
   size_t threads; /* 0: as many as OpenMP gives */
+  bool (*progress)(void *user, double done); /* false stops; or NULL */
+  void *user;
 } abbe_gem_slope_desc;
 
 typedef struct abbe_gem_slope {
@@ -53,11 +55,12 @@ typedef struct abbe_gem_change {
   double spread;
 } abbe_gem_change;
 
-/* weights: in XYZ, of the stone's wavelengths. ABBE_UNSUPPORTED for another measure,
+/* Of up to ABBE_GEM_SLOPE_MOST measures, by the same lines: desc differ in measure and fire alone.
+ * weights: in XYZ, of the stone's wavelengths. ABBE_UNSUPPORTED for another measure,
  * ABBE_INVALID_ARGUMENT for more meetings than ABBE_GEM_SLOPE_MEETINGS, what
- * abbe_gem_view_check says, ABBE_NO_MEMORY. */
+ * abbe_gem_view_check says, ABBE_CANCELLED, ABBE_NO_MEMORY. */
 abbe_result abbe_gem_slope_make(const abbe_gem_stone *stone, const abbe_weights *weights,
-                                const abbe_gem_slope_desc *desc, abbe_gem_slope *out,
+                                const abbe_gem_slope_desc *desc, size_t count, abbe_gem_slope *out,
                                 abbe_error *error);
 /* Safe on a zeroed one. */
 void abbe_gem_slope_free(abbe_gem_slope *slope);

@@ -163,25 +163,31 @@ static void enter(abbe_gem_stretch *w, const double o[3]) {
   m->cosine = m->cosine_blue = -abbe_vector_dot(n, w->sight);
   m->reflected = abbe_optics_fresnel(m->cosine, 1 / w->n);
   for (int k = 0; k < 3; k++) m->out[k] = w->sight[k] + 2 * m->cosine * n[k];
-  m->light = shine(w, m->out, m->by_out);
-  memset(m->by_blue, 0, sizeof m->by_blue);
   m->way = 0;
   m->share = 1;
 }
 
-/* What leaves through the face, and what that counts. */
-static void leave(abbe_gem_stretch *w, abbe_gem_meeting *m) {
+static bool leaves_blue(const abbe_gem_stretch *w, const abbe_gem_meeting *m) {
+  return w->n_blue * sqrt(1 - m->cosine_blue * m->cosine_blue) < 1;
+}
+
+/* What leaves through the face. */
+static void leave(const abbe_gem_stretch *w, abbe_gem_meeting *m) {
   const double *n = w->stone->plane[m->plane];
-  m->light = 0;
-  memset(m->by_out, 0, sizeof m->by_out);
-  memset(m->by_blue, 0, sizeof m->by_blue);
   m->reflected = abbe_optics_fresnel(m->cosine, w->n);
   if (m->reflected >= 1) return;
   refract(m->d, n, m->cosine, w->n, m->out);
+  if (leaves_blue(w, m)) refract(m->d_blue, n, m->cosine_blue, w->n_blue, m->out_blue);
+}
+
+/* What counts of that in the measure at hand. */
+static void judge(const abbe_gem_stretch *w, abbe_gem_meeting *m) {
+  m->light = 0;
+  memset(m->by_out, 0, sizeof m->by_out);
+  memset(m->by_blue, 0, sizeof m->by_blue);
+  if (m != w->at && m->reflected >= 1) return;
   m->light = shine(w, m->out, m->by_out);
-  if (w->q->fire == 0 || w->n_blue * sqrt(1 - m->cosine_blue * m->cosine_blue) >= 1) return;
-  refract(m->d_blue, n, m->cosine_blue, w->n_blue, m->out_blue);
-  add_fire(w, m);
+  if (m != w->at && w->q->fire != 0 && leaves_blue(w, m)) add_fire(w, m);
 }
 
 /* The next face that is met in direction d. */
@@ -321,9 +327,16 @@ static void back_ray(const double d[3], const double n[3], double cosine, double
   add(by_n, by_cosine, d);
 }
 
-/* With `lit` the stretch's value, without it what b has of the place of meeting `from`. */
-static void trace_back(const abbe_gem_stretch *w, size_t from, bool lit, double weight, back *b,
-                       abbe_gem_stretch_by *by) {
+static void add_plane(size_t plane, const double own[4], const double *weight, size_t count,
+                      abbe_gem_stretch_by *by) {
+  for (size_t j = 0; j < count; j++)
+    for (int k = 0; k < 4; k++) by[j].plane[plane][k] += weight[j] * own[k];
+}
+
+/* With `lit` the stretch's value, of one weight; without it what b has of the place of meeting
+ * `from`. */
+static void trace_back(const abbe_gem_stretch *w, size_t from, bool lit, const double *weight,
+                       size_t count, back *b, abbe_gem_stretch_by *by) {
   for (size_t i = from; i > 0; i--) {
     const abbe_gem_meeting *m = &w->at[i];
     const double *plane = w->stone->plane[m->plane], n = w->n;
@@ -332,22 +345,22 @@ static void trace_back(const abbe_gem_stretch *w, size_t from, bool lit, double 
       const double left = 1 - m->reflected;
       const double by_reflected = left > 0 ? m->share * (b->share - m->light) : 0;
       by_cosine = by_reflected * fresnel_slope(m->cosine, n);
-      by->n += weight * by_reflected * fresnel_by_eta(m->cosine, n);
+      by->n += *weight * by_reflected * fresnel_by_eta(m->cosine, n);
       add(out, m->share * left, m->by_out);
       add(blue, m->share * left, m->by_blue);
       const double arrives = left * m->light + m->reflected * b->share;
       way = -w->loss * m->share * arrives;
-      by->loss -= weight * m->way * m->share * arrives;
-      by->n += weight * refract_by_eta(m->d, plane, m->cosine, n, out);
+      by->loss -= *weight * m->way * m->share * arrives;
+      by->n += *weight * refract_by_eta(m->d, plane, m->cosine, n, out);
       b->share = arrives * (w->loss > 0 ? exp(-w->loss * m->way) : 1);
     }
     back_ray(m->d, plane, m->cosine, n, out, by_cosine, b->d, own);
     if (lit && w->q->fire != 0) {
-      by->spread += weight * refract_by_eta(m->d_blue, plane, m->cosine_blue, w->n_blue, blue);
+      by->spread += *weight * refract_by_eta(m->d_blue, plane, m->cosine_blue, w->n_blue, blue);
       back_ray(m->d_blue, plane, m->cosine_blue, w->n_blue, blue, 0, b->d_blue, own);
     }
     back_place(plane, m->d, m->p, m->way, way, b, b->d, own);
-    for (int k = 0; k < 4; k++) by->plane[m->plane][k] += weight * own[k];
+    add_plane(m->plane, own, weight, count, by);
   }
   const abbe_gem_meeting *m = &w->at[0];
   const double *plane = w->stone->plane[m->plane];
@@ -356,39 +369,47 @@ static void trace_back(const abbe_gem_stretch *w, size_t from, bool lit, double 
   if (lit) {
     by_cosine = (m->light - b->share) * fresnel_slope(m->cosine, 1 / w->n);
     by_in_n = (m->light - b->share) * fresnel_by_eta(m->cosine, 1 / w->n);
-    by->spread -= weight * refract_by_eta(w->sight, in, m->cosine, 1 / w->n_blue, b->d_blue) /
+    by->spread -= *weight * refract_by_eta(w->sight, in, m->cosine, 1 / w->n_blue, b->d_blue) /
                   (w->n_blue * w->n_blue);
     by_cosine += 2 * m->reflected * abbe_vector_dot(m->by_out, plane);
     add(own, 2 * m->cosine * m->reflected, m->by_out);
     back_refract(in, m->cosine, 1 / w->n_blue, b->d_blue, unused, by_in, &by_cosine);
   }
   by_in_n += refract_by_eta(w->sight, in, m->cosine, 1 / w->n, b->d);
-  by->n -= weight * by_in_n / (w->n * w->n);
+  for (size_t j = 0; j < count; j++) by[j].n -= weight[j] * by_in_n / (w->n * w->n);
   back_refract(in, m->cosine, 1 / w->n, b->d, unused, by_in, &by_cosine);
   add(own, -1, by_in);
   add(own, -by_cosine, w->sight);
   back_place(plane, w->sight, m->p, 0, 0, b, unused, own);
-  for (int k = 0; k < 4; k++) by->plane[m->plane][k] += weight * own[k];
+  add_plane(m->plane, own, weight, count, by);
 }
 
-void abbe_gem_stretch_light(abbe_gem_stretch *w, double t, double weight, abbe_gem_stretch_by *by) {
-  back b = {0};
+void abbe_gem_stretch_light(abbe_gem_stretch *w, double t, double weight,
+                            const abbe_gem_slope_desc *measure, size_t count, double *value,
+                            double *drift, abbe_gem_stretch_by *by) {
   move_to(w, t);
-  w->value = w->at[0].reflected * w->at[0].light;
-  for (size_t i = 1; i < w->count; i++)
-    w->value += w->at[i].share * (1 - w->at[i].reflected) * w->at[i].light;
-  trace_back(w, w->count - 1, true, weight, &b, by);
-  w->drift = abbe_vector_dot(b.p, w->line);
+  for (size_t j = 0; j < count; j++) {
+    back b = {0};
+    w->q = &measure[j];
+    for (size_t i = 0; i < w->count; i++) judge(w, &w->at[i]);
+    value[j] = w->at[0].reflected * w->at[0].light;
+    for (size_t i = 1; i < w->count; i++)
+      value[j] += w->at[i].share * (1 - w->at[i].reflected) * w->at[i].light;
+    trace_back(w, w->count - 1, true, &weight, 1, &b, &by[j]);
+    drift[j] = abbe_vector_dot(b.p, w->line);
+  }
 }
 
-void abbe_gem_stretch_move(abbe_gem_stretch *w, bool high, double jump, abbe_gem_stretch_by *by) {
+void abbe_gem_stretch_move(abbe_gem_stretch *w, bool high, const double *jump, size_t count,
+                           abbe_gem_stretch_by *by) {
   const size_t at = high ? w->high_at : w->low_at, i = high ? w->high_plane : w->low_plane;
   const double *plane = w->stone->plane[i];
   move_to(w, high ? w->high : w->low);
-  const double speed = jump / abbe_vector_dot(plane, w->at[at].v);
+  const double speed = 1 / abbe_vector_dot(plane, w->at[at].v);
+  double own[4] = {0, 0, 0, speed};
   back b = {0};
   add(b.p, -speed, plane);
-  add(by->plane[i], -speed, w->at[at].p);
-  by->plane[i][3] += speed;
-  trace_back(w, at, false, 1, &b, by);
+  add(own, -speed, w->at[at].p);
+  add_plane(i, own, jump, count, by);
+  trace_back(w, at, false, jump, count, &b, by);
 }

@@ -21,12 +21,12 @@ typedef struct abbe_gem_meeting {
   double out[3], out_blue[3]; /* and in which a share leaves */
   double cosine, cosine_blue, reflected;
   double way, share;                   /* in the stone up to here; and what arrives */
-  double light, by_out[3], by_blue[3]; /* what leaves counts so much */
+  double light, by_out[3], by_blue[3]; /* what leaves counts so much in the measure at hand */
 } abbe_gem_meeting;
 
 typedef struct abbe_gem_stretch {
   const abbe_gem_stone *stone;
-  const abbe_gem_slope_desc *q;
+  const abbe_gem_slope_desc *q; /* the measure at hand; what ends paths is the same in all */
   abbe_gem_light light;
   double sight[3], line[3]; /* unit: away from the eye; along the line */
   double n, n_blue, loss;   /* of the wavelength; loss: a unit of length */
@@ -35,17 +35,18 @@ typedef struct abbe_gem_stretch {
   abbe_gem_meeting at[ABBE_GEM_SLOPE_MEETINGS];
   double low, high;                              /* the same facets are met from here to here */
   size_t low_at, low_plane, high_at, high_plane; /* the edge that ends it, seen at that meeting */
-  double value, drift; /* of the stretch's middle; and its slope along the line */
 } abbe_gem_stretch;
 
 /* Follows the place o of the line, which is at stretch->t and before the stone's silhouette, and
  * says from where to where it is so. The rest of what is above `count` is given. */
 void abbe_gem_stretch_follow(abbe_gem_stretch *stretch, const double o[3]);
-/* Goes to a place of it, and sets value and drift; adds what all of it changes by, weighted. */
+/* Goes to a place of it. Of each measure: its value there, how that drifts along the line, and
+ * adds what all of the stretch changes by, weighted. */
 void abbe_gem_stretch_light(abbe_gem_stretch *stretch, double t, double weight,
-                            abbe_gem_stretch_by *by);
-/* Adds what an end, the high or the low one, moves by times the jump of the line's light there. */
-void abbe_gem_stretch_move(abbe_gem_stretch *stretch, bool high, double jump,
+                            const abbe_gem_slope_desc *measure, size_t count, double *value,
+                            double *drift, abbe_gem_stretch_by *by);
+/* Adds what an end, the high or the low one, moves by times each jump of the line's light there. */
+void abbe_gem_stretch_move(abbe_gem_stretch *stretch, bool high, const double *jump, size_t count,
                            abbe_gem_stretch_by *by);
 
 #endif

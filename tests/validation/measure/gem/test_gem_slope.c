@@ -19,7 +19,7 @@ static double moved(abbe_gem_stone *stone, const abbe_weights *weights, const do
   abbe_gem_slope slope;
   for (size_t i = 0; i < stone->plane_count; i++)
     for (int k = 0; k < 4; k++) stone->plane[i][k] += h * by[i][k];
-  OK(abbe_gem_slope_make(stone, weights, q, &slope, &error));
+  OK(abbe_gem_slope_make(stone, weights, q, 1, &slope, &error));
   for (size_t i = 0; i < stone->plane_count; i++)
     for (int k = 0; k < 4; k++) stone->plane[i][k] -= h * by[i][k];
   const double value = slope.value.value;
@@ -52,7 +52,7 @@ TEST(derivatives_are_those_of_differences) {
     double by[128][4];
     lean(&j.stone, by);
     abbe_gem_slope slope;
-    OK(abbe_gem_slope_make(&j.stone, &j.weights, &q, &slope, &error));
+    OK(abbe_gem_slope_make(&j.stone, &j.weights, &q, 1, &slope, &error));
     const double got =
         abbe_gem_slope_by(&slope, &(abbe_gem_change){.plane = (const double(*)[4])by}).value;
     const double exact = (moved(&j.stone, &j.weights, (const double(*)[4])by, h, &q) -
@@ -85,7 +85,7 @@ TEST(derivatives_by_the_material_are_those_of_differences) {
                              .meetings = 12,
                              .lines = 3,
                              .threads = 2};
-    MADE(abbe_gem_slope, slope, abbe_gem_slope_make(&j.stone, &j.weights, &q, &slope, &error));
+    MADE(abbe_gem_slope, slope, abbe_gem_slope_make(&j.stone, &j.weights, &q, 1, &slope, &error));
     const abbe_gem_change change = {
         .n = i / 5 == 0 ? &one : NULL, .loss = i / 5 == 1 ? &one : NULL, .spread = i / 5 == 2};
     const double got = abbe_gem_slope_by(&slope, &change).value;
@@ -99,7 +99,7 @@ TEST(derivatives_by_the_material_are_those_of_differences) {
       at[s] = i / 5 < 2 ? (double)*to : q.spread + off;
       if (i / 5 == 2) q.spread += off;
       abbe_gem_slope moved_slope;
-      OK(abbe_gem_slope_make(&j.stone, &j.weights, &q, &moved_slope, &error));
+      OK(abbe_gem_slope_make(&j.stone, &j.weights, &q, 1, &moved_slope, &error));
       value[s] = moved_slope.value.value;
       abbe_gem_slope_free(&moved_slope);
       *to = was;
@@ -110,6 +110,49 @@ TEST(derivatives_by_the_material_are_those_of_differences) {
       fail_msg("%d: %.10g and not %.10g", i, got, exact);
     abbe_spectrum_free(m.attenuation);
   }
+}
+
+static bool stop(void *user, double done) {
+  ++*(int *)user;
+  return done < 0.5;
+}
+
+/* By the same lines: of measures that are asked for together there is what each alone has. */
+TEST(measures_are_made_together_and_stopped) {
+  abbe_material m = glass(1.7);
+  OWNED(judged, j) = judged_make(design_a, &m, 1);
+  static const abbe_gem_amount measures[] = {ABBE_GEM_ISO, ABBE_GEM_GEMRAY_COS,
+                                             ABBE_GEM_AMOUNT_COUNT};
+  abbe_gem_slope_desc q[3];
+  abbe_gem_slope all[3], alone;
+  double by[128][4];
+  lean(&j.stone, by);
+  for (int i = 0; i < 3; i++)
+    q[i] = (abbe_gem_slope_desc){.measure = measures[i],
+                                 .fire = i == 2,
+                                 .spread = 0.02,
+                                 .head_rad = 0.25,
+                                 .soft_rad = 0.1,
+                                 .lines = 3,
+                                 .threads = 2};
+  const abbe_gem_change change = {.plane = (const double(*)[4])by, .spread = 1};
+  OK(abbe_gem_slope_make(&j.stone, &j.weights, q, 3, all, &error));
+  for (int i = 0; i < 3; i++) {
+    OK(abbe_gem_slope_make(&j.stone, &j.weights, &q[i], 1, &alone, &error));
+    assert_true(all[i].value.value == alone.value.value && alone.value.value > 0);
+    const abbe_gem_number is = abbe_gem_slope_by(&all[i], &change);
+    const abbe_gem_number was = abbe_gem_slope_by(&alone, &change);
+    assert_near(is.value, was.value, 1e-12 * fabs(was.value));
+    assert_near(is.error, was.error, 1e-9 * fabs(was.error));
+    abbe_gem_slope_free(&alone);
+    abbe_gem_slope_free(&all[i]);
+  }
+  int told = 0;
+  q[0].progress = stop;
+  q[0].user = &told;
+  q[0].threads = 1;
+  REFUSED(ABBE_CANCELLED, "stopped", abbe_gem_slope_make(&j.stone, &j.weights, q, 3, all, &error));
+  assert_int_equal(told, 12);
 }
 
 /* A slab seen from straight above returns 2 R / (1 + R) where it is clear; where it weakens light
@@ -126,7 +169,7 @@ TEST(a_slabs_return_changes_as_is_known) {
   OWNED(judged, j) = judged_make(slab, &m, 1);
   const abbe_gem_slope_desc q = {
       .measure = ABBE_GEM_ISO, .least_share = 1e-9, .meetings = 20, .lines = 4, .threads = 1};
-  MADE(abbe_gem_slope, slope, abbe_gem_slope_make(&j.stone, &j.weights, &q, &slope, &error));
+  MADE(abbe_gem_slope, slope, abbe_gem_slope_make(&j.stone, &j.weights, &q, 1, &slope, &error));
   const double n = (double)j.stone.media.n[0], a = (double)j.stone.media.attenuation[0];
   double low = INFINITY, high = -INFINITY, by[8][4] = {{0}};
   for (size_t i = 0; i < j.stone.plane_count; i++) {
@@ -170,7 +213,7 @@ TEST(its_value_is_a_views) {
                                    .meetings = ABBE_GEM_SLOPE_MEETINGS,
                                    .lines = 24,
                                    .threads = 2};
-    MADE(abbe_gem_slope, slope, abbe_gem_slope_make(&j.stone, &j.weights, &q, &slope, &error));
+    MADE(abbe_gem_slope, slope, abbe_gem_slope_make(&j.stone, &j.weights, &q, 1, &slope, &error));
     const abbe_gem_number seen = abbe_gem_view_amount(&view, measures[i % 3]);
     assert_near(slope.value.value, seen.value, 3.5 * hypot(seen.error, slope.value.error));
     assert_true(slope.value.error < 0.01);
