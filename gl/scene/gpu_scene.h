@@ -28,7 +28,7 @@ enum { ABBE_RAY_CHILDREN = 8 };
 typedef struct abbe_ray_node {
   float low[3][ABBE_RAY_CHILDREN], high[3][ABBE_RAY_CHILDREN];
   float axis[3][ABBE_RAY_CHILDREN], sine[ABBE_RAY_CHILDREN];
-  int32_t child[ABBE_RAY_CHILDREN];
+  int32_t child[ABBE_RAY_CHILDREN], count;
 } abbe_ray_node;
 
 typedef struct abbe_ray_trees {
@@ -42,18 +42,22 @@ abbe_result abbe_ray_trees_add(abbe_ray_trees *trees, const uint32_t (*texel)[4]
                                size_t *at, abbe_error *error);
 void abbe_ray_trees_free(abbe_ray_trees *trees);
 
-/* As hierarchy.glsl has them. */
-typedef struct abbe_ray_hit {
-  float t, u, v;
-  int triangle; /* -1: none */
-} abbe_ray_hit;
+/* Rays that meet triangles together: nodes are read once for all of them, so neighbours cost least.
+ * side 1: only triangles that the ray meets against their normal, -1: along it. t_min: from where
+ * on. t, u, v, triangle: what it meets, as hierarchy.glsl has it; up to t. */
+enum { ABBE_RAYS = 8 };
 
-/* The nearest triangle of the tree at node `root` with t_min < t < hit->t, which goes to *hit.
- * side 1: only those that the ray meets against their normal, -1: along it. triangle: a corner and
- * two edges each. */
-bool abbe_ray_trees_meet(const abbe_ray_trees *trees, size_t root, const float (*triangle)[4],
-                         const float o[3], const float d[3], float side, float t_min,
-                         abbe_ray_hit *hit);
+typedef struct abbe_rays {
+  _Alignas(64) float o[3][ABBE_RAYS];
+  float d[3][ABBE_RAYS], side[ABBE_RAYS], t_min[ABBE_RAYS];
+  float t[ABBE_RAYS], u[ABBE_RAYS], v[ABBE_RAYS];
+  int32_t triangle[ABBE_RAYS];
+} abbe_rays;
+
+/* The nearest triangle of the tree at node `root` with t_min < t on each ray of `mask`, which it is
+ * given where it is nearer than t. triangle: a corner and two edges each. */
+void abbe_ray_trees_meet(const abbe_ray_trees *trees, size_t root, const float (*triangle)[4],
+                         unsigned mask, abbe_rays *rays);
 
 /* The charts of a plan's receivers, numbered through.
  *
