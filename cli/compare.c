@@ -4,7 +4,6 @@
 #include "cli/base/command.h"
 #include "validation/measure/file_comparison.h"
 
-#include <argp.h>
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -214,17 +213,7 @@ static abbe_result compare_report_print_json(const abbe_file_comparison *r,
   return abbe_command_print_json(root, made, error);
 }
 
-enum {
-  KEY_MASK = 256,
-  KEY_MASK_SHARE,
-  KEY_WHITE,
-  KEY_SCALE,
-  KEY_TOLERANCE,
-  KEY_DIFFERENCE,
-  KEY_RANGE,
-  KEY_SEED,
-  KEY_JSON
-};
+enum { KEY_WHITE = 256, KEY_SCALE, KEY_TOLERANCE, KEY_SEED };
 
 enum { MAX_TOLERANCES = 64 };
 
@@ -263,22 +252,29 @@ static abbe_result compare(const request *q, abbe_error *error) {
 
 /* The command line */
 
-static const struct argp_option options[] = {
-    {"mask", KEY_MASK, "caustic|FILE", ABBE_ARGUMENT_READS,
-     "look at a region too: where REF's caustic is, or a picture's first channel is above 0.5", 0},
-    {"mask-share", KEY_MASK_SHARE, "X", 0, "of the caustic's light that its mask holds (0.95)", 0},
+static const abbe_option options[] = {
+    {"mask", 0, "caustic|FILE", ABBE_ARGUMENT_READS,
+     "look at a region too: where REF's caustic is, or a picture's first channel is above 0.5", 0,
+     ABBE_TAKE_TEXT(request, desc.mask)},
+    {"mask-share", 0, "X", 0, "of the caustic's light that its mask holds (0.95)", 0,
+     ABBE_TAKE_NUMBER(request, desc.mask_share, 0.001, 1)},
     {"tolerance", KEY_TOLERANCE, "[mask.]METRIC=X", 0,
      "end with 3 where the metric is above X; of an energy ratio or SSIM, its distance from 1; "
      "repeatable",
-     0},
-    {"difference", KEY_DIFFERENCE, "FILE", ABBE_ARGUMENT_WRITES,
-     "where TEST is brighter or darker, in colours: a .png or .svg", 0},
-    {"range", KEY_RANGE, "X", 0, "of the difference picture, -X to X (99 % of what there is)", 0},
-    {"scale", KEY_SCALE, "best", 0, "multiply TEST by its best single factor first", 0},
+     0, ABBE_TAKE_BY_KEY},
+    {"difference", 0, "FILE", ABBE_ARGUMENT_WRITES,
+     "where TEST is brighter or darker, in colours: a .png or .svg", 0,
+     ABBE_TAKE_TEXT(request, difference)},
+    {"range", 0, "X", 0, "of the difference picture, -X to X (99 % of what there is)", 0,
+     ABBE_TAKE_NUMBER(request, range, 1e-30, 1e30)},
+    {"scale", KEY_SCALE, "best", 0, "multiply TEST by its best single factor first", 0,
+     ABBE_TAKE_BY_KEY},
     {"white", KEY_WHITE, "Y|X,Y,Z", 0,
-     "of colour, SSIM and FLIP: D65 at Y, or XYZ (D65 at what the brightest 1 % reach)", 0},
-    {"seed", KEY_SEED, "N", 0, "of the noise that REF's errors are drawn as, for colour (0)", 0},
-    {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0},
+     "of colour, SSIM and FLIP: D65 at Y, or XYZ (D65 at what the brightest 1 % reach)", 0,
+     ABBE_TAKE_BY_KEY},
+    {"seed", KEY_SEED, "N", 0, "of the noise that REF's errors are drawn as, for colour (0)", 0,
+     ABBE_TAKE_BY_KEY},
+    {"json", 0, NULL, 0, "as JSON, numbers in full", 0, ABBE_TAKE_FLAG(request, json)},
     {0}};
 
 static void wrong_tolerance(const char *text, struct argp_state *state) {
@@ -339,19 +335,9 @@ static void finish(request *q, struct argp_state *state) {
                  abbe_compare_metric_name(q->tolerance[i].metric));
 }
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_TEXT(request, KEY_MASK, desc.mask),
-    ABBE_TAKE_NUMBER(request, KEY_MASK_SHARE, desc.mask_share, 0.001, 1),
-    ABBE_TAKE_TEXT(request, KEY_DIFFERENCE, difference),
-    ABBE_TAKE_NUMBER(request, KEY_RANGE, range, 1e-30, 1e30),
-    ABBE_TAKE_FLAG(request, KEY_JSON, json),
-    {0},
-};
-
 static error_t parse(int key, char *arg, struct argp_state *state) {
   static const char *const scales[] = {"best"};
   request *q = state->input;
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case KEY_WHITE:
     set_white(q, arg, state);
@@ -377,9 +363,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   }
 }
 
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
+    .parse = parse,
     .args_doc = "REF.exr TEST.exr",
     .doc =
         "Says how far a picture or a receiver map is from a reference: in light, in colour, band "

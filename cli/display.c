@@ -8,7 +8,6 @@
 #include "colorimetry/screen/lut.h"
 #include "colorimetry/spectral_picture/relight.h"
 
-#include <argp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -131,24 +130,30 @@ static abbe_result write_table(const request *r, abbe_error *error) {
   return ABBE_OK;
 }
 
-enum { KEY_LIST = 256, KEY_SOURCE, KEY_LAYER, KEY_NODES, KEY_STOPS };
+enum { KEY_SOURCE = 256, KEY_STOPS };
 
-static const struct argp_option options[] = {
+static const abbe_option options[] = {
     {"output", 'o', "OUT.png|OUT.cube", ABBE_ARGUMENT_WRITES,
      "the picture to write, .png, .webp, .jpg, .gif or .avif; .cube or .clf: the view as a table "
      "for other programs, "
      "of no picture",
-     0},
-    {"nodes", KEY_NODES, "N", 0, "of each side of a table (33)", 0},
-    {"stops", KEY_STOPS, "LOW:HIGH", 0, "what a table covers, from 0.18 (-10:6.5)", 0},
-    {"layer", KEY_LAYER, "NAME", 0,
+     0, ABBE_TAKE_BY_KEY},
+    {"nodes", 0, "N", 0, "of each side of a table (33)", 0,
+     ABBE_TAKE_COUNT(request, nodes, ABBE_LUT_MIN_NODES, ABBE_LUT_MAX_NODES)},
+    {"stops", KEY_STOPS, "LOW:HIGH", 0, "what a table covers, from 0.18 (-10:6.5)", 0,
+     ABBE_TAKE_BY_KEY},
+    {"layer", 0, "NAME", 0,
      "show the layer NAME.R, NAME.G, NAME.B; a channel, a band (550nm) or a standard error "
      "(stderr) "
      "in false colours",
-     0},
+     0, ABBE_TAKE_TEXT(request, layer)},
     {"source", KEY_SOURCE, "SPACE", 0,
-     "the picture's colour space; without it, what the file says, else linear Rec.709", 0},
-    {"list", KEY_LIST, NULL, 0, "list the displays and their views", 0},
+     "the picture's colour space; without it, what the file says, else linear Rec.709", 0,
+     ABBE_TAKE_BY_KEY},
+    {"list", 0, NULL, 0, "list the displays and their views", 0, ABBE_TAKE_FLAG(request, list)},
+    ABBE_OPTIONS(request, &abbe_spectral_options_argp, spectral,
+                 "A spectral picture by its bands, not by its R, G, B:", 1),
+    ABBE_OPTIONS(request, &abbe_screen_options_argp, screen, "How it is shown:", 2),
     {0}};
 
 static void take_stops(const char *text, request *r, struct argp_state *state) {
@@ -158,18 +163,8 @@ static void take_stops(const char *text, request *r, struct argp_state *state) {
     argp_error(state, "--stops '%s' is no range such as -10:6.5", text);
 }
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_CHILD(request, 0, spectral),
-    ABBE_TAKE_CHILD(request, 1, screen),
-    ABBE_TAKE_TEXT(request, KEY_LAYER, layer),
-    ABBE_TAKE_FLAG(request, KEY_LIST, list),
-    ABBE_TAKE_COUNT(request, KEY_NODES, nodes, ABBE_LUT_MIN_NODES, ABBE_LUT_MAX_NODES),
-    {0},
-};
-
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case 'o':
     if (abbe_lut_is_meant(arg))
@@ -210,15 +205,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   }
 }
 
-static const struct argp_child children[] = {
-    {&abbe_spectral_options_argp, 0, "A spectral picture by its bands, not by its R, G, B:", 1},
-    {&abbe_screen_options_argp, 0, "How it is shown:", 2},
-    {0}};
-
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .children = children,
-    .parser = parse,
+    .parse = parse,
     .args_doc = "IN.exr -o OUT.png\n-o OUT.cube|OUT.clf\n--list",
     .doc =
         "Turns a linear OpenEXR picture into a PNG, WebP, JPEG, GIF or AVIF for a screen, through "

@@ -5,13 +5,10 @@
 #include "scenes/export/pov_file.h"
 #include "scenes/export/scene_export.h"
 
-#include <argp.h>
 #include <cjson/cJSON.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
-
-enum { OPTION_TO = 0x100, OPTION_PHOTONS, OPTION_SAMPLES, OPTION_MATERIALS, OPTION_JSON };
 
 #define NAME(code, name, ending, form, program) name ", "
 #define ENDING(code, name, ending, form, program) ending ", "
@@ -24,19 +21,26 @@ typedef struct request {
   bool json, quiet;
 } request;
 
-static const struct argp_option options[] = {
+static const abbe_option options[] = {
     {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "where to: " ABBE_SCENE_EXPORTS(ENDING) "or .pov",
-     0},
-    {"to", OPTION_TO, "FORMAT", 0,
-     ABBE_SCENE_EXPORTS(NAME) "or povray; by the file's ending where it is not said", 0},
-    {"photons", OPTION_PHOTONS, "N", 0, "that POV-Ray shoots at refractors (100000)", 0},
-    {"samples", OPTION_SAMPLES, "N", 0, "of POV-Ray's spectrum, 2 to 100 (31)", 0},
-    {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
-     "a table instead of the scene's: default, thesis or a file", 0},
-    ABBE_SCENE_INPUT_OPTIONS(0),
-    ABBE_SCENE_INPUT_STUDIO_OPTIONS(0),
-    {"json", OPTION_JSON, NULL, 0, "what became of each material, on standard output", 0},
-    {"quiet", 'q', NULL, 0, "no summary", 0},
+     1, ABBE_TAKE_TEXT(request, output)},
+    {"to", 0, "FORMAT", 0,
+     ABBE_SCENE_EXPORTS(NAME) "or povray; by the file's ending where it is not said", 0,
+     ABBE_TAKE_TEXT(request, to)},
+    {"photons", 0, "N", 0, "that POV-Ray shoots at refractors (100000)", 0,
+     ABBE_TAKE_COUNT(request, pov.photons, 1, ABBE_POV_MAX_PHOTONS)},
+    {"samples", 0, "N", 0, "of POV-Ray's spectrum, 2 to 100 (31)", 0,
+     ABBE_TAKE_COUNT(request, pov.samples, 2, ABBE_POV_MAX_SAMPLES)},
+    {"materials", 0, "TABLE", ABBE_ARGUMENT_READS,
+     "a table instead of the scene's: default, thesis or a file", 0,
+     ABBE_TAKE_TEXT(request, materials)},
+    ABBE_OPTIONS(request, &abbe_scene_input_options, changes, NULL, 0),
+    ABBE_OPTIONS(request, &abbe_studio_options, changes, NULL, 0),
+    {"json", 0, NULL, 0, "what became of each material, on standard output", 0,
+     ABBE_TAKE_FLAG(request, json)},
+    {"quiet", 'q', NULL, 0, "no summary", 1, ABBE_TAKE_FLAG(request, quiet)},
+    ABBE_NEEDED(request, scene, "which scene? Give a file such as scenes/gem.yaml"),
+    ABBE_NEEDED(request, output, "where to? Give -o FILE.pbrt, for one"),
     {0}};
 
 /* By --to, else by the ending; the ending has to be the format's. */
@@ -64,22 +68,8 @@ static void choose_target(request *q, struct argp_state *state) {
     argp_error(state, "--photons and --samples are POV-Ray's; leave them out");
 }
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_TEXT(request, 'o', output),
-    ABBE_TAKE_TEXT(request, OPTION_TO, to),
-    ABBE_TAKE_COUNT(request, OPTION_PHOTONS, pov.photons, 1, ABBE_POV_MAX_PHOTONS),
-    ABBE_TAKE_COUNT(request, OPTION_SAMPLES, pov.samples, 2, ABBE_POV_MAX_SAMPLES),
-    ABBE_TAKE_TEXT(request, OPTION_MATERIALS, materials),
-    ABBE_TAKE_FLAG(request, OPTION_JSON, json),
-    ABBE_TAKE_FLAG(request, 'q', quiet),
-    ABBE_TAKE_NEEDED(request, scene, "which scene? Give a file such as scenes/gem.yaml"),
-    ABBE_TAKE_NEEDED(request, output, "where to? Give -o FILE.pbrt, for one"),
-    {0},
-};
-
 static error_t parse(int key, char *text, struct argp_state *state) {
   request *q = state->input;
-  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
   case ARGP_KEY_ARG:
     abbe_scene_input_take_file(&q->changes, &q->scene, text, state);
@@ -88,7 +78,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     choose_target(q, state);
     return 0;
   default:
-    return abbe_scene_input_take(&q->changes, key, text, q->program);
+    return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -210,10 +200,8 @@ static abbe_result write_scene(const request *q, const abbe_scene *scene, abbe_e
 }
 
 int abbe_command_export(int argc, char **argv) {
-  static const struct argp argp = {
-      options,
-      parse,
-      "SCENE.yaml",
+  static const abbe_parser argp = {
+      options, parse, "SCENE.yaml",
       "Writes a scene for another program, and says what that cannot hold of it.\v"
       "pbrt takes n as a table, glTF n_d and an Abbe number, Blender one index for red, green and "
       "blue each, POV-Ray two numbers. Pictures are written beside the file, as STEM-NAME.\n\n"
@@ -221,10 +209,7 @@ int abbe_command_export(int argc, char **argv) {
       "  abbe export scenes/gem.yaml -o gem.pbrt\n"
       "  abbe export scenes/gem.yaml -o gem.glb --json\n"
       "  abbe export scenes/gem.yaml --to blender -o gem.py\n"
-      "  abbe export scenes/prism.yaml -o prism.pov --photons 1000000 --samples 100\n",
-      NULL,
-      NULL,
-      NULL};
+      "  abbe export scenes/prism.yaml -o prism.pov --photons 1000000 --samples 100\n"};
   request q = {.program = argv[0]};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};

@@ -4,7 +4,6 @@
 #include "base/text.h"
 #include "colorimetry/image/image.h"
 
-#include <argp.h>
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -149,22 +148,17 @@ static abbe_result print_json(const request *r, const abbe_image *image, abbe_er
   return abbe_command_print_json(root, made, error);
 }
 
-enum { KEY_JSON = 256 };
-
-static const struct argp_option options[] = {
-    {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0}, {0}};
-
-static const abbe_take takes[] = {ABBE_TAKE_FLAG(request, KEY_JSON, json), {0}};
+static const abbe_option options[] = {
+    {"json", 0, NULL, 0, "as JSON, numbers in full", 0, ABBE_TAKE_FLAG(request, json)}, {0}};
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   return abbe_arguments_one_file(key, arg, &r->path, state);
 }
 
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
+    .parse = parse,
     .args_doc = "FILE.exr",
     .doc =
         "Says what an OpenEXR picture holds: size, windows, chromaticities, text attributes, and "

@@ -10,7 +10,6 @@
 #include "colorimetry/spectral_picture/pixel_probe.h"
 #include "colorimetry/weights.h"
 
-#include <argp.h>
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdbool.h>
@@ -295,12 +294,14 @@ static abbe_result run(request *r, abbe_error *error) {
 
 /* The command line */
 
-enum { KEY_LAYER = 256, KEY_PLOT, KEY_JSON };
-
-static const struct argp_option options[] = {
-    {"layer", KEY_LAYER, "NAME", 0, "the channels NAME.R …, NAME.S0.550nm …", 0},
-    {"plot", KEY_PLOT, "FILE", ABBE_ARGUMENT_WRITES, "the spectrum as a .png or .svg", 0},
-    {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0},
+static const abbe_option options[] = {
+    {"layer", 0, "NAME", 0, "the channels NAME.R …, NAME.S0.550nm …", 0,
+     ABBE_TAKE_TEXT(request, layer)},
+    {"plot", 0, "FILE", ABBE_ARGUMENT_WRITES, "the spectrum as a .png or .svg", 0,
+     ABBE_TAKE_TEXT(request, plot)},
+    {"json", 0, NULL, 0, "as JSON, numbers in full", 0, ABBE_TAKE_FLAG(request, json)},
+    ABBE_OPTIONS(request, &abbe_spectral_options_argp, spectral,
+                 "How the spectrum is looked at:", 1),
     {0}};
 
 /* "12,34" or "12,34:56,78". */
@@ -324,17 +325,8 @@ static void set_place(request *r, const char *text, struct argp_state *state) {
   r->placed = true;
 }
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_TEXT(request, KEY_LAYER, layer),
-    ABBE_TAKE_TEXT(request, KEY_PLOT, plot),
-    ABBE_TAKE_FLAG(request, KEY_JSON, json),
-    ABBE_TAKE_CHILD(request, 0, spectral),
-    {0},
-};
-
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case ARGP_KEY_ARG:
     if (r->placed) argp_error(state, "'%s' is one argument too many", arg);
@@ -353,13 +345,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   }
 }
 
-static const struct argp_child children[] = {
-    {&abbe_spectral_options_argp, 0, "How the spectrum is looked at:", 1}, {0}};
-
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .children = children,
-    .parser = parse,
+    .parse = parse,
     .args_doc = "FILE.exr X,Y[:X1,Y1]",
     .doc =
         "Says what a picture has at a pixel, or in the mean of a region: its channels with their "

@@ -5,7 +5,6 @@
 #include "colorimetry/image/exr.h"
 #include "colorimetry/spectral_picture/relight.h"
 
-#include <argp.h>
 #include <stdio.h>
 
 typedef struct request {
@@ -37,35 +36,32 @@ static abbe_result relight(const request *r, const abbe_image *image, abbe_error
   return ABBE_OK;
 }
 
-enum { KEY_PNG = 256, KEY_SPACE, KEY_LAYER, KEY_BANDS, KEY_RELATIVE };
+enum { KEY_SPACE = 256 };
 
-static const struct argp_option options[] = {
+static const abbe_option options[] = {
     {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES,
-     "the scene-linear picture, .exr; or that for a display, by its ending as --png", 0},
-    {"png", KEY_PNG, "OUT.png", ABBE_ARGUMENT_WRITES,
-     "the picture for a display, through OpenColorIO: .png, .webp, .jpg, .gif or .avif", 0},
-    {"space", KEY_SPACE, "NAME", 0, "acescg, rec709 or xyz; without it, acescg", 0},
-    {"layer", KEY_LAYER, "NAME", 0, "the channels NAME.S0.550nm …", 0},
-    {"bands", KEY_BANDS, NULL, 0, "keep the bands too, under the new illuminant", 0},
-    {"relative", KEY_RELATIVE, NULL, 0,
-     "without --lit-by: an even 1 W/(m2 sr nm) is Y = 1, not lm (of a radiance: cd/m2)", 0},
+     "the scene-linear picture, .exr; or that for a display, by its ending as --png", 0,
+     ABBE_TAKE_OUTPUT(request, exr, png)},
+    {"png", 0, "OUT.png", ABBE_ARGUMENT_WRITES,
+     "the picture for a display, through OpenColorIO: .png, .webp, .jpg, .gif or .avif", 0,
+     ABBE_TAKE_OUTPUT(request, png, png)},
+    {"space", KEY_SPACE, "NAME", 0, "acescg, rec709 or xyz; without it, acescg", 0,
+     ABBE_TAKE_BY_KEY},
+    {"layer", 0, "NAME", 0, "the channels NAME.S0.550nm …", 0, ABBE_TAKE_TEXT(request, desc.layer)},
+    {"bands", 0, NULL, 0, "keep the bands too, under the new illuminant", 0,
+     ABBE_TAKE_FLAG(request, desc.bands)},
+    {"relative", 0, NULL, 0,
+     "without --lit-by: an even 1 W/(m2 sr nm) is Y = 1, not lm (of a radiance: cd/m2)", 0,
+     ABBE_TAKE_FLAG(request, desc.relative)},
+    ABBE_OPTIONS(request, &abbe_spectral_options_argp, spectral,
+                 "How the spectrum is looked at:", 1),
+    ABBE_OPTIONS(request, &abbe_screen_options_argp, screen,
+                 "How the picture for a display shows it:", 2),
     {0}};
-
-static const abbe_take takes[] = {
-    ABBE_TAKE_OUTPUT(request, 'o', exr, png),
-    ABBE_TAKE_OUTPUT(request, KEY_PNG, png, png),
-    ABBE_TAKE_TEXT(request, KEY_LAYER, desc.layer),
-    ABBE_TAKE_FLAG(request, KEY_BANDS, desc.bands),
-    ABBE_TAKE_FLAG(request, KEY_RELATIVE, desc.relative),
-    ABBE_TAKE_CHILD(request, 0, spectral),
-    ABBE_TAKE_CHILD(request, 1, screen),
-    {0},
-};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   const char *spaces[ABBE_RGB_SPACE_COUNT];
   request *r = state->input;
-  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
   case KEY_SPACE:
     for (int i = 0; i < ABBE_RGB_SPACE_COUNT; i++)
@@ -84,15 +80,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-static const struct argp_child children[] = {
-    {&abbe_spectral_options_argp, 0, "How the spectrum is looked at:", 1},
-    {&abbe_screen_options_argp, 0, "How the picture for a display shows it:", 2},
-    {0}};
-
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .children = children,
-    .parser = parse,
+    .parse = parse,
     .args_doc = "IN.exr",
     .doc =
         "Shows a spectral picture to another observer, or under another illuminant, by its bands: "

@@ -4,7 +4,6 @@
 
 #include "validation/lab/known/known_answers.h"
 
-#include <argp.h>
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -105,25 +104,21 @@ static abbe_result validate(request *r, abbe_error *error) {
   return result;
 }
 
-enum {
-  KEY_ONLY = 256,
-  KEY_SAMPLES,
-  KEY_SEED,
-  KEY_THREADS,
-  KEY_CHART,
-  KEY_QUIET,
-  KEY_JSON,
-  MAX_GROUPS = 32
-};
+enum { KEY_ONLY = 256, KEY_CHART, MAX_GROUPS = 32 };
 
-static const struct argp_option options[] = {
-    {"only", KEY_ONLY, "GROUP", ABBE_ARGUMENT_ONCE, "one group of answers; see the list below", 0},
-    {"samples", KEY_SAMPLES, "N", 0, "paths of each traced light, instead of each group's own", 0},
-    {"seed", KEY_SEED, "N", 0, "other random numbers; without it, 0", 0},
-    {"threads", KEY_THREADS, "N", 0, "1 to 1024; without it, one a processor", 0},
-    {"chart", KEY_CHART, "FILE", ABBE_ARGUMENT_WRITES, "draw the errors, as .png or .svg", 0},
-    {"quiet", KEY_QUIET, NULL, 0, "no progress bar", 0},
-    {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0},
+static const abbe_option options[] = {
+    {"only", KEY_ONLY, "GROUP", ABBE_ARGUMENT_ONCE, "one group of answers; see the list below", 0,
+     ABBE_TAKE_BY_KEY},
+    {"samples", 0, "N", 0, "paths of each traced light, instead of each group's own", 0,
+     ABBE_TAKE_COUNT(request, options.samples, 1000, 1000000000000)},
+    {"seed", 0, "N", 0, "other random numbers; without it, 0", 0,
+     ABBE_TAKE_COUNT(request, options.seed, 0, UINT32_MAX)},
+    {"threads", 0, "N", 0, "1 to 1024; without it, one a processor", 0,
+     ABBE_TAKE_COUNT(request, options.threads, 1, 1024)},
+    {"chart", KEY_CHART, "FILE", ABBE_ARGUMENT_WRITES, "draw the errors, as .png or .svg", 0,
+     ABBE_TAKE_BY_KEY},
+    {"quiet", 0, NULL, 0, "no progress bar", 0, ABBE_TAKE_FLAG(request, quiet)},
+    {"json", 0, NULL, 0, "as JSON, numbers in full", 0, ABBE_TAKE_FLAG(request, json)},
     {0}};
 
 static const char *choose_group(const request *r, const char *word) {
@@ -142,18 +137,8 @@ static bool is_picture(const char *path) {
   return dot != NULL && (strcmp(dot, ".png") == 0 || strcmp(dot, ".svg") == 0);
 }
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_COUNT(request, KEY_SAMPLES, options.samples, 1000, 1000000000000),
-    ABBE_TAKE_COUNT(request, KEY_SEED, options.seed, 0, UINT32_MAX),
-    ABBE_TAKE_COUNT(request, KEY_THREADS, options.threads, 1, 1024),
-    ABBE_TAKE_FLAG(request, KEY_QUIET, quiet),
-    ABBE_TAKE_FLAG(request, KEY_JSON, json),
-    {0},
-};
-
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case KEY_ONLY:
     r->options.only = choose_group(r, arg);
@@ -172,9 +157,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
 }
 
 #define GROUP_LINE(name, what) "  " #name ": " what "\n"
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
+    .parse = parse,
     .doc = "Holds the reference tracer against optics that is known in closed form or by "
            "quadrature, a row an answer: exact, traced, error, tolerance and its reason. Ends "
            "with 3 where a row is out of tolerance. All of it takes nine minutes of "

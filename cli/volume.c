@@ -8,7 +8,6 @@
 #include "scenes/volume/caustic_volume.h"
 #include "validation/lab/volume_fill.h"
 
-#include <argp.h>
 #include <cjson/cJSON.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,56 +23,53 @@ typedef struct request {
   bool json, quiet;
 } request;
 
-enum {
-  OPTION_OBJECT = 0x100,
-  OPTION_LIGHT,
-  OPTION_NODES,
-  OPTION_RAYS,
-  OPTION_ASYMMETRIC,
-  OPTION_SHELLS,
-  OPTION_GRID,
-  OPTION_RADII,
-  OPTION_PRINTED,
-  OPTION_PHOTONS,
-  OPTION_PASSES,
-  OPTION_UNTIL_ERROR,
-  OPTION_CHECKPOINT,
-  OPTION_MATERIALS,
-  OPTION_JSON
-};
+enum { OPTION_SHELLS = 0x100, OPTION_GRID, OPTION_PRINTED };
 
-static const struct argp_option options[] = {
-    {"output", 'o', "FILE.exr", ABBE_ARGUMENT_WRITES, "the volume", 0},
-    {"json", OPTION_JSON, NULL, 0, "what was done, as JSON on standard output", 0},
-    {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
-    {"object", OPTION_OBJECT, "NAME", 0, "whose caustics; the scene's only refractor without", 1},
-    {"light", OPTION_LIGHT, "NAME", 0, "of whose colour the light is; the first without", 1},
-    {"nodes", OPTION_NODES, "N", 0,
-     "directions of light: 1, 12, 42, 162, 642 or 2562 (162; of a ball 1)", 1},
-    {"rays", OPTION_RAYS, "N", 0,
+static const abbe_option options[] = {
+    {"output", 'o', "FILE.exr", ABBE_ARGUMENT_WRITES, "the volume", 0,
+     ABBE_TAKE_TARGET(request, out, ".exr")},
+    {"json", 0, NULL, 0, "what was done, as JSON on standard output", 0,
+     ABBE_TAKE_FLAG(request, json)},
+    {"quiet", 'q', NULL, 0, "no progress, no summary", 0, ABBE_TAKE_FLAG(request, quiet)},
+    {"object", 0, "NAME", 0, "whose caustics; the scene's only refractor without", 1,
+     ABBE_TAKE_TEXT(request, object)},
+    {"light", 0, "NAME", 0, "of whose colour the light is; the first without", 1,
+     ABBE_TAKE_TEXT(request, light)},
+    {"nodes", 0, "N", 0, "directions of light: 1, 12, 42, 162, 642 or 2562 (162; of a ball 1)", 1,
+     ABBE_TAKE_COUNT(request, desc.nodes, 1, ABBE_LIGHT_NODES_MOST)},
+    {"rays", 0, "N", 0,
      "the rays of N points of the object's surface in place of cells' values: any illuminant, "
      "lamps "
      "nearby, sharp between nodes",
-     1},
-    {"asymmetric", OPTION_ASYMMETRIC, NULL, 0,
-     "of rays: do not look for the object's symmetry, to measure what it saves", 1},
+     1, ABBE_TAKE_COUNT(request, desc.exits, 1, ABBE_LIGHT_EXITS_MOST)},
+    {"asymmetric", 0, NULL, 0,
+     "of rays: do not look for the object's symmetry, to measure what it saves", 1,
+     ABBE_TAKE_FLAG(request, desc.asymmetric)},
     {"shells", OPTION_SHELLS, "SxN|SxMxM", 0,
      "S shells of N triangles (80, 320, 1280, 5120 ...) or M x M octahedral texels (24x5120; of "
      "rays 24x48x48)",
-     1},
-    {"grid", OPTION_GRID, "N", 0, "or N x N x N cubes, 2 to 256", 1},
-    {"radii", OPTION_RADII, "X", 0, "how far the region goes, in radii of the object (3)", 1},
-    {"printed", OPTION_PRINTED, NULL, 0, "bytes as the method was published, for wyman2003", 1},
-    {"photons", OPTION_PHOTONS, "N", 0, "of a node and pass (262144)", 2},
-    {"passes", OPTION_PASSES, "N", 0, "of a node (4)", 2},
-    {"until-error", OPTION_UNTIL_ERROR, "X", 0,
-     "more passes, until a node's relative standard error is below X", 2},
-    ABBE_WORK_OPTIONS(2, 2),
-    {"checkpoint", OPTION_CHECKPOINT, "FILE", ABBE_ARGUMENT_WRITES,
-     "where it is kept until all is done (OUTPUT.checkpoint)", 2},
-    {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
-     "a table instead of the scene's: default, thesis or a file", 1},
-    ABBE_SCENE_INPUT_OPTIONS(1),
+     1, ABBE_TAKE_BY_KEY},
+    {"grid", OPTION_GRID, "N", 0, "or N x N x N cubes, 2 to 256", 1, ABBE_TAKE_BY_KEY},
+    {"radii", 0, "X", 0, "how far the region goes, in radii of the object (3)", 1,
+     ABBE_TAKE_NUMBER(request, radii, 1.1, 1000)},
+    {"printed", OPTION_PRINTED, NULL, 0, "bytes as the method was published, for wyman2003", 1,
+     ABBE_TAKE_BY_KEY},
+    {"photons", 0, "N", 0, "of a node and pass (262144)", 2,
+     ABBE_TAKE_COUNT(request, desc.photons, 1, ABBE_VOLUME_FILL_MOST_PHOTONS)},
+    {"passes", 0, "N", 0, "of a node (4)", 2,
+     ABBE_TAKE_COUNT(request, desc.passes, 1, ABBE_VOLUME_FILL_MOST_PASSES)},
+    {"until-error", 0, "X", 0, "more passes, until a node's relative standard error is below X", 2,
+     ABBE_TAKE_NUMBER(request, desc.until_error, 1e-6, 1)},
+    ABBE_WORK_OPTIONS(request, work, 2, 2),
+    {"checkpoint", 0, "FILE", ABBE_ARGUMENT_WRITES,
+     "where it is kept until all is done (OUTPUT.checkpoint)", 2,
+     ABBE_TAKE_TEXT(request, desc.checkpoint)},
+    {"materials", 0, "TABLE", ABBE_ARGUMENT_READS,
+     "a table instead of the scene's: default, thesis or a file", 1,
+     ABBE_TAKE_TEXT(request, materials)},
+    ABBE_OPTIONS(request, &abbe_scene_input_options, changes, NULL, 0),
+    ABBE_NEEDED(request, scene, "of which scene? Try scenes/sphere.yaml"),
+    ABBE_NEEDED(request, out, "where to? Give -o FILE.exr"),
     {0}};
 
 /* "24x5120" or "24x72x72". */
@@ -110,30 +106,9 @@ static void take_shells(request *q, const char *text) {
   }
 }
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_TARGET(request, 'o', out, ".exr"),
-    ABBE_TAKE_FLAG(request, OPTION_JSON, json),
-    ABBE_TAKE_FLAG(request, 'q', quiet),
-    ABBE_TAKE_TEXT(request, OPTION_OBJECT, object),
-    ABBE_TAKE_TEXT(request, OPTION_LIGHT, light),
-    ABBE_TAKE_COUNT(request, OPTION_NODES, desc.nodes, 1, ABBE_LIGHT_NODES_MOST),
-    ABBE_TAKE_COUNT(request, OPTION_RAYS, desc.exits, 1, ABBE_LIGHT_EXITS_MOST),
-    ABBE_TAKE_FLAG(request, OPTION_ASYMMETRIC, desc.asymmetric),
-    ABBE_TAKE_NUMBER(request, OPTION_RADII, radii, 1.1, 1000),
-    ABBE_TAKE_COUNT(request, OPTION_PHOTONS, desc.photons, 1, ABBE_VOLUME_FILL_MOST_PHOTONS),
-    ABBE_TAKE_COUNT(request, OPTION_PASSES, desc.passes, 1, ABBE_VOLUME_FILL_MOST_PASSES),
-    ABBE_TAKE_NUMBER(request, OPTION_UNTIL_ERROR, desc.until_error, 1e-6, 1),
-    ABBE_TAKE_TEXT(request, OPTION_CHECKPOINT, desc.checkpoint),
-    ABBE_TAKE_TEXT(request, OPTION_MATERIALS, materials),
-    ABBE_TAKE_NEEDED(request, scene, "of which scene? Try scenes/sphere.yaml"),
-    ABBE_TAKE_NEEDED(request, out, "where to? Give -o FILE.exr"),
-    {0},
-};
-
 static error_t parse(int key, char *text, struct argp_state *state) {
   request *q = state->input;
   abbe_volume_fill_desc *d = &q->desc;
-  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
   case OPTION_SHELLS:
     take_shells(q, text);
@@ -151,9 +126,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->scene = text;
     return 0;
   default:
-    return abbe_work_options_take(&q->work, key, text, q->program) == 0
-               ? 0
-               : abbe_scene_input_take(&q->changes, key, text, q->program);
+    return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -285,9 +258,9 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
 }
 
 int abbe_command_volume(int argc, char **argv) {
-  static const struct argp parser = {
+  static const abbe_parser parser = {
       .options = options,
-      .parser = parse,
+      .parse = parse,
       .args_doc = "SCENE.yaml",
       .doc =
           "Computes an object's caustics beforehand: the light that it sends to the space around "

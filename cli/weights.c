@@ -4,7 +4,6 @@
 
 #include "colorimetry/weights.h"
 
-#include <argp.h>
 #include <cjson/cJSON.h>
 #include <stdio.h>
 
@@ -108,18 +107,21 @@ static abbe_result print_weights(const request *r, abbe_error *error) {
   return print_table(r, &t, error);
 }
 
-enum { KEY_COUNT = 256, KEY_RANGE, KEY_ILLUMINANT, KEY_OBSERVER, KEY_SPACE, KEY_SET, KEY_JSON };
+enum { KEY_COUNT = 256, KEY_RANGE, KEY_OBSERVER, KEY_SPACE, KEY_SET };
 
-static const struct argp_option options[] = {
-    {"count", KEY_COUNT, "N", 0, "wavelength samples, 1 to 4096; without it, 7", 0},
-    {"range", KEY_RANGE, "FROM:TO", 0, "in nm; without it, 380:780", 0},
-    {"illuminant", KEY_ILLUMINANT, "NAME|FILE", ABBE_ARGUMENT_READS,
-     "a name of the list below, or a file of two columns, wavelength and power; without it, D65",
-     0},
-    {"observer", KEY_OBSERVER, "NAME", 0, "1931, 1964, 2015-2 or 2015-10; without it, 1931", 0},
-    {"space", KEY_SPACE, "SPACE", 0, "xyz, rec709 or acescg; without it, xyz", 0},
-    {"set", KEY_SET, "SET", 0, "cie, or thesis: the thesis's seven RGB triples as printed", 0},
-    {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0},
+static const abbe_option options[] = {
+    {"count", 0, "N", 0, "wavelength samples, 1 to 4096; without it, 7", 0,
+     ABBE_TAKE_COUNT(request, count, 1, ABBE_WAVELENGTHS_MAX_COUNT)},
+    {"range", KEY_RANGE, "FROM:TO", 0, "in nm; without it, 380:780", 0, ABBE_TAKE_BY_KEY},
+    {"illuminant", 0, "NAME|FILE", ABBE_ARGUMENT_READS,
+     "a name of the list below, or a file of two columns, wavelength and power; without it, D65", 0,
+     ABBE_TAKE_TEXT(request, illuminant)},
+    {"observer", KEY_OBSERVER, "NAME", 0, "1931, 1964, 2015-2 or 2015-10; without it, 1931", 0,
+     ABBE_TAKE_BY_KEY},
+    {"space", KEY_SPACE, "SPACE", 0, "xyz, rec709 or acescg; without it, xyz", 0, ABBE_TAKE_BY_KEY},
+    {"set", KEY_SET, "SET", 0, "cie, or thesis: the thesis's seven RGB triples as printed", 0,
+     ABBE_TAKE_BY_KEY},
+    {"json", 0, NULL, 0, "as JSON, numbers in full", 0, ABBE_TAKE_FLAG(request, json)},
     {0}};
 
 static abbe_rgb_space choose_space(const request *r, const char *word) {
@@ -129,18 +131,10 @@ static abbe_rgb_space choose_space(const request *r, const char *word) {
                                              ABBE_RGB_SPACE_COUNT);
 }
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_COUNT(request, KEY_COUNT, count, 1, ABBE_WAVELENGTHS_MAX_COUNT),
-    ABBE_TAKE_TEXT(request, KEY_ILLUMINANT, illuminant),
-    ABBE_TAKE_FLAG(request, KEY_JSON, json),
-    {0},
-};
-
 static error_t parse(int key, char *arg, struct argp_state *state) {
   static const char *const sets[] = {"cie", "thesis"};
   request *r = state->input;
   r->chosen = r->chosen || (key >= KEY_COUNT && key <= KEY_SPACE);
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case KEY_RANGE:
     abbe_command_range(r->program, "--range", arg, &r->min_nm, &r->max_nm);
@@ -168,9 +162,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   }
 }
 
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
+    .parse = parse,
     .doc = "Prints what each wavelength sample adds to a colour: the integral of observer x "
            "illuminant over the sample's own band, such that all samples together are the "
            "illuminant's white with Y = 1.\v"

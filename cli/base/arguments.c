@@ -5,6 +5,7 @@
 #include "colorimetry/image/exr.h"
 #include "spectral/materials/material_table.h"
 
+#include <assert.h>
 #include <libgen.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -224,57 +225,33 @@ static char *expand_home(const char *program, char *word) {
   return kept[count++] = whole;
 }
 
-void abbe_arguments_parse(const struct argp *argp, unsigned flags, int argc, char **argv,
-                          void *input) {
-  static const struct argp_option own[] = {{"help", '?', NULL, 0, NULL, 0},
-                                           {"usage", -1, NULL, 0, NULL, 0},
-                                           {"version", 'V', NULL, 0, NULL, 0},
-                                           {0}};
-  static const struct argp always = {.options = own};
-  option_list list = {.count = 0};
-  bool only_arguments = false;
-  collect(argp, &list);
-  collect(&always, &list);
-  abbe_arguments_add(argv[0], ABBE_ARGUMENT_READS, "$OCIO", getenv("OCIO"));
-  for (int i = 1; i < argc; i++) argv[i] = expand_home(argv[0], argv[i]);
-  for (int i = 1; i < argc; i++) {
-    const char *word = argv[i];
-    if (!only_arguments && strcmp(word, "--") == 0)
-      only_arguments = true;
-    else if (only_arguments || word[0] != '-' || word[1] == '\0')
-      abbe_arguments_add(argv[0], flags, "the argument", flags != 0 ? word : NULL);
-    else
-      i += take_option(argv[0], &list, word, argv[i + 1]);
-  }
-  if (argp_parse(argp, argc, argv, 0, NULL, input) != 0) no_memory(argv[0]);
+/* ---- argp, made of rows ---- */
+
+enum { MAX_PARSERS = 12, MAX_CHILDREN = 8, OWN_KEYS = 0x8000 };
+
+/* A parser and the request that it fills, as argp has them: each parser's input is its own one. */
+typedef struct bound {
+  const abbe_parser *parser;
+  char *request;
+  struct argp argp;
+  struct argp_option option[MAX_OPTIONS];
+  struct argp_child child[MAX_CHILDREN];
+  struct bound *inner[MAX_CHILDREN];
+} bound;
+
+static bool is_last(const abbe_option *o) {
+  return o->name == NULL && o->doc == NULL && o->key == 0 && o->take.kind == 0;
 }
 
-error_t abbe_arguments_one_file(int key, char *text, const char **path, struct argp_state *state) {
-  if (key != ARGP_KEY_ARG && key != ARGP_KEY_END) return ARGP_ERR_UNKNOWN;
-  if (key == ARGP_KEY_ARG && *path != NULL)
-    argp_error(state, "'%s' is one argument too many", text);
-  if (key == ARGP_KEY_ARG) *path = text;
-  if (*path == NULL) argp_error(state, "which file?");
-  return 0;
+static int key_of(const bound *b, const abbe_option *o) {
+  return o->key != 0 || o->name == NULL ? o->key : OWN_KEYS + (int)(o - b->parser->options);
 }
 
-static const struct argp_option *option_of(const struct argp *argp, int key) {
-  for (const struct argp_option *o = argp->options; o != NULL && (o->name || o->key || o->doc); o++)
-    if (o->key == key) return o;
-  const struct argp_option *found = NULL;
-  for (const struct argp_child *c = argp->children; !found && c != NULL && c->argp != NULL; c++)
-    found = option_of(c->argp, key);
-  return found;
-}
-
-bool abbe_take_option(const abbe_take *takes, int key, char *text, struct argp_state *state) {
-  const abbe_take *t = takes;
-  while (t->kind != 0 && t->key != key) t++;
-  if (t->kind == 0) return false;
-  char *const request = state->input, called[64] = "";
-  const struct argp_option *option = option_of(state->root_argp, key);
-  if (option != NULL && key < 128) snprintf(called, sizeof called, "-%c", key);
-  if (option != NULL && key >= 128) snprintf(called, sizeof called, "--%s", option->name);
+static void take_row(const abbe_option *o, char *request, char *text, struct argp_state *state) {
+  const abbe_take *t = &o->take;
+  char called[64];
+  snprintf(called, sizeof called, o->key > 0 && o->key < 128 ? "-%c" : "--", o->key);
+  if (called[1] == '-') snprintf(called, sizeof called, "--%s", o->name);
   const char **word = (const char **)(request + t->at);
   double *number = (double *)(request + t->at), *end = (double *)(request + t->to);
   switch (t->kind) {
@@ -295,29 +272,99 @@ bool abbe_take_option(const abbe_take *takes, int key, char *text, struct argp_s
     abbe_command_size(state->name, called, text, (unsigned long)t->most, (size_t *)word,
                       (size_t *)(request + t->to));
     break;
-  case ABBE_TAKES_CHILD:
-    for (; t->kind != 0; t++)
-      if (t->kind == ABBE_TAKES_CHILD) state->child_inputs[(size_t)t->least] = request + t->at;
-    break;
-  case ABBE_TAKES_NEEDED:
-    for (; t->kind != 0; t++)
-      if (t->kind == ABBE_TAKES_NEEDED && *(const char **)(request + t->at) == NULL)
-        argp_error(state, "%s", t->ending);
-    return false;
   case ABBE_TAKES_RANGE:
     abbe_command_range(state->name, called, text, number, end);
     break;
   case ABBE_TAKES_TARGET:
-    *word = abbe_command_target(state->name, called, text, t->ending);
+    *word = abbe_command_target(state->name, called, text, t->text);
     break;
   case ABBE_TAKES_OUTPUT:
     abbe_command_output(state->name, called, text, t->at != t->to ? word : NULL,
                         (const char **)(request + t->to));
     break;
   default:
-    if (key == ARGP_KEY_ARG && *word != NULL)
+    if (t->kind == ABBE_TAKES_ARGUMENT && *word != NULL)
       argp_error(state, "'%s' is one argument too many", text);
     *word = text;
   }
-  return true;
+}
+
+static error_t parse_bound(int key, char *text, struct argp_state *state) {
+  bound *b = state->input;
+  for (size_t i = 0; key == ARGP_KEY_INIT && b->inner[i] != NULL; i++)
+    state->child_inputs[i] = b->inner[i];
+  for (const abbe_option *o = b->parser->options; !is_last(o); o++) {
+    const abbe_take *t = &o->take;
+    if (t->kind == ABBE_TAKES_NEEDED && key == ARGP_KEY_END &&
+        *(const char **)(b->request + t->at) == NULL)
+      argp_error(state, "%s", t->text);
+    const bool own = o->name != NULL && key_of(b, o) == key;
+    if (t->kind == 0 || !(own || (t->kind == ABBE_TAKES_ARGUMENT && key == ARGP_KEY_ARG))) continue;
+    take_row(o, b->request, text, state);
+    return 0;
+  }
+  if (b->parser->parse == NULL) return ARGP_ERR_UNKNOWN;
+  state->input = b->request;
+  const error_t result = b->parser->parse(key, text, state);
+  state->input = b;
+  return result;
+}
+
+static bound *bind_parser(const abbe_parser *parser, char *request) {
+  static bound bounds[MAX_PARSERS];
+  static size_t count;
+  assert(count < MAX_PARSERS);
+  bound *b = &bounds[count++];
+  size_t options = 0, children = 0;
+  *b = (bound){.parser = parser, .request = request};
+  for (const abbe_option *o = parser->options; !is_last(o); o++) {
+    if (o->take.kind == ABBE_TAKES_CHILD) {
+      assert(children + 1 < MAX_CHILDREN);
+      b->inner[children] = bind_parser(o->take.child, request + o->take.at);
+      b->child[children] = (struct argp_child){&b->inner[children]->argp, 0, o->doc, o->group};
+      children++;
+    } else if (o->name != NULL || o->doc != NULL) {
+      assert(options + 1 < MAX_OPTIONS);
+      b->option[options++] =
+          (struct argp_option){o->name, key_of(b, o), o->arg, o->flags, o->doc, o->group};
+    }
+  }
+  b->argp =
+      (struct argp){b->option, parse_bound, parser->args_doc, parser->doc, b->child, NULL, NULL};
+  return b;
+}
+
+void abbe_arguments_parse(const abbe_parser *parser, unsigned flags, int argc, char **argv,
+                          void *request) {
+  static const struct argp_option own[] = {{"help", '?', NULL, 0, NULL, 0},
+                                           {"usage", -1, NULL, 0, NULL, 0},
+                                           {"version", 'V', NULL, 0, NULL, 0},
+                                           {0}};
+  static const struct argp always = {.options = own};
+  option_list list = {.count = 0};
+  bool only_arguments = false;
+  bound *b = bind_parser(parser, request);
+  collect(&b->argp, &list);
+  collect(&always, &list);
+  abbe_arguments_add(argv[0], ABBE_ARGUMENT_READS, "$OCIO", getenv("OCIO"));
+  for (int i = 1; i < argc; i++) argv[i] = expand_home(argv[0], argv[i]);
+  for (int i = 1; i < argc; i++) {
+    const char *word = argv[i];
+    if (!only_arguments && strcmp(word, "--") == 0)
+      only_arguments = true;
+    else if (only_arguments || word[0] != '-' || word[1] == '\0')
+      abbe_arguments_add(argv[0], flags, "the argument", flags != 0 ? word : NULL);
+    else
+      i += take_option(argv[0], &list, word, argv[i + 1]);
+  }
+  if (argp_parse(&b->argp, argc, argv, 0, NULL, b) != 0) no_memory(argv[0]);
+}
+
+error_t abbe_arguments_one_file(int key, char *text, const char **path, struct argp_state *state) {
+  if (key != ARGP_KEY_ARG && key != ARGP_KEY_END) return ARGP_ERR_UNKNOWN;
+  if (key == ARGP_KEY_ARG && *path != NULL)
+    argp_error(state, "'%s' is one argument too many", text);
+  if (key == ARGP_KEY_ARG) *path = text;
+  if (*path == NULL) argp_error(state, "which file?");
+  return 0;
 }

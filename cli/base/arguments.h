@@ -23,11 +23,132 @@ enum {
   ABBE_ARGUMENT_STREAMS = 0x1000 /* "-" is standard output, where it is written */
 };
 
+/* Where an option's value goes: into a field of the request, whose type is checked where the row is
+ * written. */
+struct abbe_parser;
+typedef struct abbe_take {
+  int kind;
+  size_t at, to; /* of the fields in the request */
+  double least, most;
+  const char *text;
+  const struct abbe_parser *child;
+} abbe_take;
+enum {
+  ABBE_TAKES_TEXT = 1,
+  ABBE_TAKES_ARGUMENT,
+  ABBE_TAKES_FLAG,
+  ABBE_TAKES_NUMBER,
+  ABBE_TAKES_COUNT,
+  ABBE_TAKES_RANGE,
+  ABBE_TAKES_TARGET,
+  ABBE_TAKES_OUTPUT,
+  ABBE_TAKES_LENGTH,
+  ABBE_TAKES_SIZE,
+  ABBE_TAKES_CHILD,
+  ABBE_TAKES_NEEDED
+};
+
+#define ABBE_TAKE_AT(request, field, type)                                                         \
+  (offsetof(request, field) + 0 * sizeof(char[_Generic(((request *)0)->field, type : 1)]))
+/* const char *: the value as it stands. */
+#define ABBE_TAKE_TEXT(request, field)                                                             \
+  { .kind = ABBE_TAKES_TEXT, .at = ABBE_TAKE_AT(request, field, const char *) }
+/* bool: true. */
+#define ABBE_TAKE_FLAG(request, field)                                                             \
+  { .kind = ABBE_TAKES_FLAG, .at = ABBE_TAKE_AT(request, field, bool) }
+/* double, and size_t: from least to most. */
+#define ABBE_TAKE_NUMBER(request, field, least_, most_)                                            \
+  {                                                                                                \
+    .kind = ABBE_TAKES_NUMBER, .at = ABBE_TAKE_AT(request, field, double), .least = least_,        \
+    .most = most_                                                                                  \
+  }
+#define ABBE_TAKE_COUNT(request, field, least_, most_)                                             \
+  {                                                                                                \
+    .kind = ABBE_TAKES_COUNT, .at = ABBE_TAKE_AT(request, field, size_t), .least = least_,         \
+    .most = most_                                                                                  \
+  }
+/* double: a length with its unit, from least to most m. */
+#define ABBE_TAKE_LENGTH(request, field, least_, most_)                                            \
+  {                                                                                                \
+    .kind = ABBE_TAKES_LENGTH, .at = ABBE_TAKE_AT(request, field, double), .least = least_,        \
+    .most = most_                                                                                  \
+  }
+/* Two size_t, of a value such as 640x480, to most. */
+#define ABBE_TAKE_SIZE(request, width, height, most_)                                              \
+  {                                                                                                \
+    .kind = ABBE_TAKES_SIZE, .at = ABBE_TAKE_AT(request, width, size_t),                           \
+    .to = ABBE_TAKE_AT(request, height, size_t), .most = most_                                     \
+  }
+/* Two doubles, of a value such as 380:780. */
+#define ABBE_TAKE_RANGE(request, from, to_)                                                        \
+  {                                                                                                \
+    .kind = ABBE_TAKES_RANGE, .at = ABBE_TAKE_AT(request, from, double),                           \
+    .to = ABBE_TAKE_AT(request, to_, double)                                                       \
+  }
+/* const char *: a file to write, whose name ends so. */
+#define ABBE_TAKE_TARGET(request, field, ending)                                                   \
+  { .kind = ABBE_TAKES_TARGET, .at = ABBE_TAKE_AT(request, field, const char *), .text = ending }
+/* const char *: the name of a picture, as abbe_command_output has it; of one for a display alone,
+ * exr is png. */
+#define ABBE_TAKE_OUTPUT(request, exr, png)                                                        \
+  {                                                                                                \
+    .kind = ABBE_TAKES_OUTPUT, .at = ABBE_TAKE_AT(request, exr, const char *),                     \
+    .to = ABBE_TAKE_AT(request, png, const char *)                                                 \
+  }
+
+/* One row an option, as argp has it and with what it is for; a row without a name is what its take
+ * says. Rows end with {0}. */
+typedef struct abbe_option {
+  const char *name;
+  int key; /* a letter, or what the parser's own function knows the option by; else 0 */
+  const char *arg;
+  int flags;
+  const char *doc;
+  int group;
+  abbe_take take;
+} abbe_option;
+
+/* For an option that the parser's own function takes by its key. */
+#define ABBE_TAKE_BY_KEY                                                                           \
+  { 0 }
+/* Rows of no option. const char *: the one argument that there may be. */
+#define ABBE_ARGUMENT(request, field)                                                              \
+  {                                                                                                \
+    .take = {.kind = ABBE_TAKES_ARGUMENT, .at = ABBE_TAKE_AT(request, field, const char *) }       \
+  }
+/* const char *: at the end of the line there must be one; else the sentence says what lacks. */
+#define ABBE_NEEDED(request, field, sentence)                                                      \
+  {                                                                                                \
+    .take = {                                                                                      \
+      .kind = ABBE_TAKES_NEEDED,                                                                   \
+      .at = ABBE_TAKE_AT(request, field, const char *),                                            \
+      .text = sentence                                                                             \
+    }                                                                                              \
+  }
+/* The field is the request of another parser, whose options these are too: in their own groups, or
+ * all in one, with a heading. */
+#define ABBE_OPTIONS(request, parser, field, heading, group_)                                      \
+  {                                                                                                \
+    .doc = heading, .group = group_, .take = {                                                     \
+      .kind = ABBE_TAKES_CHILD,                                                                    \
+      .at = offsetof(request, field),                                                              \
+      .child = parser                                                                              \
+    }                                                                                              \
+  }
+
+/* A command's options, or some that several commands have. */
+typedef struct abbe_parser {
+  const abbe_option *options;
+  /* For keys that no row takes, with the request as state->input; or NULL. */
+  error_t (*parse)(int key, char *text, struct argp_state *state);
+  const char *args_doc, *doc;
+} abbe_parser;
+
 /* argp_parse under the rules. The flags are those of what is no option: 0, or
  * ABBE_ARGUMENT_READS where they name files. Ends the program with ABBE_EXIT_USAGE where something
  * is refused, with ABBE_EXIT_FAILED where memory lacks. argv[0] is the command's name. */
-void abbe_arguments_parse(const struct argp *argp, unsigned flags, int argc, char **argv,
-                          void *input);
+void abbe_arguments_parse(const abbe_parser *parser, unsigned flags, int argc, char **argv,
+                          void *request);
 
 /* Holds a file to the third rule that no option names: `what` says what it is. Ends the program
  * likewise. A path that is NULL or empty is none. */
@@ -45,77 +166,5 @@ const abbe_argument *abbe_arguments_given(size_t index);
 /* For the parser of a command about one file, what is no option: takes ARGP_KEY_ARG, and
  * ARGP_KEY_END, at which there must be one; ARGP_ERR_UNKNOWN for other keys. */
 error_t abbe_arguments_one_file(int key, char *text, const char **path, struct argp_state *state);
-
-/* Options whose value goes into one field of the request: a row each, in place of a case of the
- * parser, and {0} at the end. The types of the fields are checked where the row is written. */
-typedef struct abbe_take {
-  int kind, key;
-  size_t at, to; /* of the fields in the request */
-  double least, most;
-  const char *ending;
-} abbe_take;
-enum {
-  ABBE_TAKES_TEXT = 1,
-  ABBE_TAKES_FLAG,
-  ABBE_TAKES_NUMBER,
-  ABBE_TAKES_COUNT,
-  ABBE_TAKES_RANGE,
-  ABBE_TAKES_TARGET,
-  ABBE_TAKES_OUTPUT,
-  ABBE_TAKES_LENGTH,
-  ABBE_TAKES_SIZE,
-  ABBE_TAKES_CHILD,
-  ABBE_TAKES_NEEDED
-};
-#define ABBE_TAKE_AT(request, field, type)                                                         \
-  (offsetof(request, field) + 0 * sizeof(char[_Generic(((request *)0)->field, type : 1)]))
-/* const char *: the value as it stands. */
-#define ABBE_TAKE_TEXT(request, key, field)                                                        \
-  { ABBE_TAKES_TEXT, key, ABBE_TAKE_AT(request, field, const char *), 0, 0, 0, NULL }
-/* The same of what is no option, of which there may be one. */
-#define ABBE_TAKE_ARGUMENT(request, field) ABBE_TAKE_TEXT(request, ARGP_KEY_ARG, field)
-/* bool: true. */
-#define ABBE_TAKE_FLAG(request, key, field)                                                        \
-  { ABBE_TAKES_FLAG, key, ABBE_TAKE_AT(request, field, bool), 0, 0, 0, NULL }
-/* double, and size_t: from least to most. */
-#define ABBE_TAKE_NUMBER(request, key, field, least, most)                                         \
-  { ABBE_TAKES_NUMBER, key, ABBE_TAKE_AT(request, field, double), 0, least, most, NULL }
-#define ABBE_TAKE_COUNT(request, key, field, least, most)                                          \
-  { ABBE_TAKES_COUNT, key, ABBE_TAKE_AT(request, field, size_t), 0, least, most, NULL }
-/* double: a length with its unit, from least to most m. */
-#define ABBE_TAKE_LENGTH(request, key, field, least, most)                                         \
-  { ABBE_TAKES_LENGTH, key, ABBE_TAKE_AT(request, field, double), 0, least, most, NULL }
-/* Two size_t, of a value such as 640x480, to most. */
-#define ABBE_TAKE_SIZE(request, key, width, height, most)                                          \
-  {                                                                                                \
-    ABBE_TAKES_SIZE, key, ABBE_TAKE_AT(request, width, size_t),                                    \
-        ABBE_TAKE_AT(request, height, size_t), 0, most, NULL                                       \
-  }
-/* The field is what the index-th child of the parser fills. */
-#define ABBE_TAKE_CHILD(request, index, field)                                                     \
-  { ABBE_TAKES_CHILD, ARGP_KEY_INIT, offsetof(request, field), 0, index, 0, NULL }
-/* const char *: at the end of the line there must be one; else the sentence says what lacks. Other
- * conditions of the end may follow: its key is not taken. */
-#define ABBE_TAKE_NEEDED(request, field, sentence)                                                 \
-  { ABBE_TAKES_NEEDED, ARGP_KEY_END, ABBE_TAKE_AT(request, field, const char *), 0, 0, 0, sentence }
-/* Two doubles, of a value such as 380:780. */
-#define ABBE_TAKE_RANGE(request, key, from, to)                                                    \
-  {                                                                                                \
-    ABBE_TAKES_RANGE, key, ABBE_TAKE_AT(request, from, double), ABBE_TAKE_AT(request, to, double), \
-        0, 0, NULL                                                                                 \
-  }
-/* const char *: a file to write, whose name ends so. */
-#define ABBE_TAKE_TARGET(request, key, field, ending)                                              \
-  { ABBE_TAKES_TARGET, key, ABBE_TAKE_AT(request, field, const char *), 0, 0, 0, ending }
-/* const char *: the name of a picture, as abbe_command_output has it; of one for a display alone,
- * exr is png. */
-#define ABBE_TAKE_OUTPUT(request, key, exr, png)                                                   \
-  {                                                                                                \
-    ABBE_TAKES_OUTPUT, key, ABBE_TAKE_AT(request, exr, const char *),                              \
-        ABBE_TAKE_AT(request, png, const char *), 0, 0, NULL                                       \
-  }
-/* Puts the value of the option into its field of state->input; false where no row has the key. A
- * value that is wrong ends the program with ABBE_EXIT_USAGE. */
-bool abbe_take_option(const abbe_take *takes, int key, char *text, struct argp_state *state);
 
 #endif

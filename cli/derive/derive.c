@@ -6,28 +6,13 @@
 #include "colorimetry/image/exr.h"
 #include "spectral/wavelengths.h"
 
-#include <argp.h>
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-  OPTION_BY = 0x400,
-  OPTION_LIGHT,
-  OPTION_LIKE,
-  OPTION_MAP,
-  OPTION_LINES,
-  OPTION_POINTS,
-  OPTION_SIZE,
-  OPTION_SPP,
-  OPTION_SPACE,
-  OPTION_INTERFACES,
-  OPTION_MATERIALS,
-  OPTION_STONE,
-  OPTION_JSON
-};
+enum { OPTION_BY = 0x400, OPTION_SPACE };
 enum { MOST_SIDE = 4096 };
 
 typedef abbe_derive_request request;
@@ -43,62 +28,54 @@ static bool is_of_map(const request *q) {
   return q->width > 0 || q->map.like != NULL;
 }
 
-static const struct argp_option options[] = {
+static const abbe_option options[] = {
     {"by", OPTION_BY, "KEY", 0,
      "a number of the scene, as --set has it, such as objects.prism.apex or "
      "lights.lamp.position.2; "
      "or materials.NAME.n, .B (um2), .V or .absorption (1/m) of what NAME has more; may be "
      "repeated",
-     0},
+     0, ABBE_TAKE_BY_KEY},
     {"output", 'o', "FILE.exr", ABBE_ARGUMENT_WRITES,
      "the camera's picture and its derivative by each key, with standard errors; with --map or "
      "--map-like the map of one light",
-     0},
-    {"stone", OPTION_STONE, "OBJECT", 0,
+     0, ABBE_TAKE_TARGET(request, exr, ".exr")},
+    {"stone", 0, "OBJECT", 0,
      "instead: light return, ISO, COS, leakage and fire of that stone, seen from straight above as "
      "it lies in the scene",
-     0},
-    {"json", OPTION_JSON, NULL, 0, "the numbers as JSON", 0},
-    {"quiet", 'q', NULL, 0, "no progress, no notes", 0},
-    {"map-light", OPTION_LIGHT, "NAME", 0, "whose light, its name or number (the first)", 1},
-    {"map-like", OPTION_LIKE, "MAP.exr", ABBE_ARGUMENT_READS, "a map whose texels are taken", 1},
-    {"map", OPTION_MAP, "WxH", 0, "texels of the map that is written in place of the picture", 1},
-    {"size", OPTION_SIZE, "WxH", 0, "pixels of the picture; the scene's own without", 1},
-    {"spp", OPTION_SPP, "N", 0, "samples of each pixel (32)", 1},
-    {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
-    {"lines", OPTION_LINES, "N", 0,
-     "across the light's window, or across the view of a stone, in all (1024)", 1},
-    {"points", OPTION_POINTS, "N", 0, "of each line (64)", 1},
-    {"interfaces", OPTION_INTERFACES, "N", 0, "that a path may meet, 1 to 32 (12)", 1},
-    ABBE_SCENE_INPUT_OPTIONS(1),
-    ABBE_SCENE_INPUT_STUDIO_OPTIONS(1),
-    {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
-     "a table instead of the scene's: default, thesis or a file", 1},
-    {"range", ABBE_WORK_RANGE, "FROM:TO", 0, "wavelengths, nm (380:780)", 1},
-    {"seed", ABBE_WORK_SEED, "N", 0, "of the random numbers (0)", 1},
-    {"threads", ABBE_WORK_THREADS, "N", 0, "without it, all; results do not depend on it", 1},
+     0, ABBE_TAKE_TEXT(request, stone)},
+    {"json", 0, NULL, 0, "the numbers as JSON", 0, ABBE_TAKE_FLAG(request, json)},
+    {"quiet", 'q', NULL, 0, "no progress, no notes", 0, ABBE_TAKE_FLAG(request, quiet)},
+    {"map-light", 0, "NAME", 0, "whose light, its name or number (the first)", 1,
+     ABBE_TAKE_TEXT(request, map.light)},
+    {"map-like", 0, "MAP.exr", ABBE_ARGUMENT_READS, "a map whose texels are taken", 1,
+     ABBE_TAKE_TEXT(request, map.like)},
+    {"map", 0, "WxH", 0, "texels of the map that is written in place of the picture", 1,
+     ABBE_TAKE_SIZE(request, width, height, MOST_SIDE)},
+    {"size", 0, "WxH", 0, "pixels of the picture; the scene's own without", 1,
+     ABBE_TAKE_SIZE(request, columns, rows, MOST_SIDE)},
+    {"spp", 0, "N", 0, "samples of each pixel (32)", 1, ABBE_TAKE_COUNT(request, samples, 1, 1e6)},
+    {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1,
+     ABBE_TAKE_BY_KEY},
+    {"lines", 0, "N", 0, "across the light's window, or across the view of a stone, in all (1024)",
+     1, ABBE_TAKE_COUNT(request, lines, ABBE_DERIVATIVE_PARTS, 1e9)},
+    {"points", 0, "N", 0, "of each line (64)", 1, ABBE_TAKE_COUNT(request, points, 2, 1e6)},
+    {"interfaces", 0, "N", 0, "that a path may meet, 1 to 32 (12)", 1,
+     ABBE_TAKE_COUNT(request, interfaces, 1, ABBE_SPECULAR_MOST_INTERFACES)},
+    ABBE_OPTIONS(request, &abbe_scene_input_options, changes, NULL, 0),
+    ABBE_OPTIONS(request, &abbe_studio_options, changes, NULL, 0),
+    {"materials", 0, "TABLE", ABBE_ARGUMENT_READS,
+     "a table instead of the scene's: default, thesis or a file", 1,
+     ABBE_TAKE_TEXT(request, materials)},
+    {"range", 0, "FROM:TO", 0, "wavelengths, nm (380:780)", 1,
+     ABBE_TAKE_RANGE(request, work.min_nm, work.max_nm)},
+    {"seed", 0, "N", 0, "of the random numbers (0)", 1,
+     ABBE_TAKE_COUNT(request, work.seed, 0, UINT32_MAX)},
+    {"threads", 0, "N", 0, "without it, all; results do not depend on it", 1,
+     ABBE_TAKE_COUNT(request, work.threads, 1, ABBE_WORK_MOST_THREADS)},
     {0}};
-
-static const abbe_take takes[] = {
-    ABBE_TAKE_TARGET(request, 'o', exr, ".exr"),
-    ABBE_TAKE_FLAG(request, OPTION_JSON, json),
-    ABBE_TAKE_FLAG(request, 'q', quiet),
-    ABBE_TAKE_TEXT(request, OPTION_LIGHT, map.light),
-    ABBE_TAKE_TEXT(request, OPTION_LIKE, map.like),
-    ABBE_TAKE_TEXT(request, OPTION_MATERIALS, materials),
-    ABBE_TAKE_TEXT(request, OPTION_STONE, stone),
-    ABBE_TAKE_SIZE(request, OPTION_MAP, width, height, MOST_SIDE),
-    ABBE_TAKE_SIZE(request, OPTION_SIZE, columns, rows, MOST_SIDE),
-    ABBE_TAKE_COUNT(request, OPTION_SPP, samples, 1, 1e6),
-    ABBE_TAKE_COUNT(request, OPTION_LINES, lines, ABBE_DERIVATIVE_PARTS, 1e9),
-    ABBE_TAKE_COUNT(request, OPTION_POINTS, points, 2, 1e6),
-    ABBE_TAKE_COUNT(request, OPTION_INTERFACES, interfaces, 1, ABBE_SPECULAR_MOST_INTERFACES),
-    {0},
-};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   request *q = state->input;
-  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
   case OPTION_BY:
     if (q->keys == ABBE_DERIVE_MOST_KEYS)
@@ -121,9 +98,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
       argp_error(state, "no more than %d --set", ABBE_SCENE_INPUT_MOST - 1);
     return 0;
   default:
-    return abbe_work_options_take(&q->work, key, text, state->name) == 0
-               ? 0
-               : abbe_scene_input_take(&q->changes, key, text, state->name);
+    return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -411,9 +386,9 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   return result;
 }
 
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
+    .parse = parse,
     .args_doc = "SCENE.yaml",
     .doc =
         "Says how the camera's picture changes with scalars of the scene, pixel by pixel, or what "

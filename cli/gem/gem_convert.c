@@ -19,20 +19,12 @@ typedef struct request {
   const char *output;
 } request;
 
-static const struct argp_option options[] = {{"output", 'o', "FILE", ABBE_ARGUMENT_WRITES,
-                                              "where to: .asc, .gem, .gcs, .stl, .obj or .glb", 0},
-                                             {0}};
-
-static const abbe_take takes[] = {
-    ABBE_TAKE_CHILD(request, 0, in),
-    ABBE_TAKE_TEXT(request, 'o', output),
-    ABBE_TAKE_NEEDED(request, output, "where to? Give -o FILE.asc, .gem, .gcs, .stl, .obj or .glb"),
-    {0},
-};
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  return abbe_take_option(takes, key, text, state) ? 0 : ARGP_ERR_UNKNOWN;
-}
+static const abbe_option options[] = {
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "where to: .asc, .gem, .gcs, .stl, .obj or .glb",
+     0, ABBE_TAKE_TEXT(request, output)},
+    ABBE_OPTIONS(request, &abbe_gem_input_argp, in, NULL, 0),
+    ABBE_NEEDED(request, output, "where to? Give -o FILE.asc, .gem, .gcs, .stl, .obj or .glb"),
+    {0}};
 
 static abbe_result print_json(const request *q, const abbe_report *report, abbe_error *error) {
   cJSON *root = cJSON_CreateObject();
@@ -45,11 +37,8 @@ static abbe_result print_json(const request *q, const abbe_report *report, abbe_
 }
 
 int abbe_gem_convert(int argc, char **argv) {
-  static const struct argp_child children[] = {{&abbe_gem_input_argp, 0, NULL, 0}, {0}};
-  static const struct argp argp = {
-      options,
-      parse,
-      "FILE",
+  static const abbe_parser argp = {
+      options, NULL, "FILE",
       "Writes a design in another format, or its stone as a solid.\v"
       "STL and OBJ are in millimetres, z up, glTF in metres, y up; without --width a unit of the "
       "design is a metre. glTF takes index, dispersion and colour of --material.\n\n"
@@ -57,10 +46,7 @@ int abbe_gem_convert(int argc, char **argv) {
       "  abbe gem convert stone.gem -o stone.asc\n"
       "  abbe gem convert scenes/designs/brilliant-quartz.asc --width 8 -o stone.stl\n"
       "  abbe gem convert scenes/designs/brilliant-diamond.asc --width 6.5 --material diamond -o "
-      "stone.glb",
-      children,
-      NULL,
-      NULL};
+      "stone.glb"};
   request q = {.in.program = argv[0]};
   abbe_report report = {0};
   abbe_error error = {0};
@@ -83,19 +69,12 @@ typedef struct gem_diagram_request {
   const char *output;
 } gem_diagram_request;
 
-static const struct argp_option gem_diagram_options[] = {
-    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "the sheet: .pdf, .svg or .png", 0}, {0}};
-
-static const abbe_take gem_diagram_takes[] = {
-    ABBE_TAKE_CHILD(gem_diagram_request, 0, in),
-    ABBE_TAKE_TEXT(gem_diagram_request, 'o', output),
-    ABBE_TAKE_NEEDED(gem_diagram_request, output, "where to? Give -o FILE.pdf, .svg or .png"),
-    {0},
-};
-
-static error_t gem_diagram_parse(int key, char *text, struct argp_state *state) {
-  return abbe_take_option(gem_diagram_takes, key, text, state) ? 0 : ARGP_ERR_UNKNOWN;
-}
+static const abbe_option gem_diagram_options[] = {
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "the sheet: .pdf, .svg or .png", 0,
+     ABBE_TAKE_TEXT(gem_diagram_request, output)},
+    ABBE_OPTIONS(gem_diagram_request, &abbe_gem_input_argp, in, NULL, 0),
+    ABBE_NEEDED(gem_diagram_request, output, "where to? Give -o FILE.pdf, .svg or .png"),
+    {0}};
 
 /* The stone's note, where one is wanted. */
 static const char *note_of(const abbe_gem_input *in, char *text, size_t size) {
@@ -113,20 +92,14 @@ static const char *note_of(const abbe_gem_input *in, char *text, size_t size) {
 }
 
 int abbe_gem_diagram(int argc, char **argv) {
-  static const struct argp_child children[] = {{&abbe_gem_input_argp, 0, NULL, 0}, {0}};
-  static const struct argp argp = {
-      gem_diagram_options,
-      gem_diagram_parse,
-      "FILE",
+  static const abbe_parser argp = {
+      gem_diagram_options, NULL, "FILE",
       "Draws a design on a sheet to cut from.\v"
       "Crown and pavilion with the wheel of indices, two profiles, proportions, and the tiers with "
       "their angles, indices and instructions.\n\n"
       "Examples:\n"
       "  abbe gem diagram scenes/designs/brilliant-quartz.asc -o quartz.pdf\n"
-      "  abbe gem diagram stone.gem --material sapphire --width 8 -o stone.png",
-      children,
-      NULL,
-      NULL};
+      "  abbe gem diagram stone.gem --material sapphire --width 8 -o stone.png"};
   gem_diagram_request q = {.in.program = argv[0]};
   char note[300];
   abbe_error error = {0};
@@ -288,9 +261,11 @@ static abbe_result gem_info_print_json(const abbe_gem_input *in, abbe_error *err
   return abbe_command_print_json(root, true, error);
 }
 
-static const struct argp_option gem_info_options[] = {
+static const abbe_option gem_info_options[] = {
     {"rough", OPTION_ROUGH, "AxBxC", 0,
-     "size of a rough such as 12x9x7mm, for the largest stone that it holds and its yield", 0},
+     "size of a rough such as 12x9x7mm, for the largest stone that it holds and its yield", 0,
+     ABBE_TAKE_BY_KEY},
+    {.take = {.kind = ABBE_TAKES_CHILD, .child = &abbe_gem_input_argp}},
     {0}};
 
 /* Each side in the unit that stands behind it or, there being none, behind the last one. */
@@ -315,31 +290,21 @@ static void read_rough(abbe_gem_input *in, const char *text) {
 
 static error_t gem_info_parse(int key, char *text, struct argp_state *state) {
   abbe_gem_input *in = state->input;
-  if (key == ARGP_KEY_INIT)
-    state->child_inputs[0] = in;
-  else if (key == OPTION_ROUGH)
-    read_rough(in, text);
-  else
-    return ARGP_ERR_UNKNOWN;
+  if (key != OPTION_ROUGH) return ARGP_ERR_UNKNOWN;
+  read_rough(in, text);
   return 0;
 }
 
 int abbe_gem_info(int argc, char **argv) {
-  static const struct argp_child children[] = {{&abbe_gem_input_argp, 0, NULL, 0}, {0}};
-  static const struct argp argp = {
-      gem_info_options,
-      gem_info_parse,
-      "FILE",
+  static const abbe_parser argp = {
+      gem_info_options, gem_info_parse, "FILE",
       "Says what a design holds: facets, proportions, weight, critical angle, tiers.\v"
       "Designs are GemCad's .asc and .gem files and Gem Cut Studio's .gcs.\n\n"
       "Examples:\n"
       "  abbe gem info scenes/designs/brilliant-quartz.asc\n"
       "  abbe gem info scenes/designs/brilliant-diamond.asc --material diamond --width 6.5\n"
       "  abbe gem info stone.gem --material sapphire --rough 12x9x7mm\n"
-      "  abbe gem info stone.gem --weld 1e-4 --json",
-      children,
-      NULL,
-      NULL};
+      "  abbe gem info stone.gem --weld 1e-4 --json"};
   abbe_gem_input in = {.program = argv[0]};
   abbe_error error = {0};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &in);

@@ -80,54 +80,35 @@ abbe_result abbe_gem_stone_input_load(abbe_gem_stone_input *q, abbe_error *error
   return ABBE_OK;
 }
 
-enum {
-  OPTION_MATERIAL = 0x200,
-  OPTION_TABLE,
-  OPTION_WIDTH,
-  OPTION_DENSITY,
-  OPTION_WELD,
-  OPTION_JSON
-};
-
-static const struct argp_option options[] = {
-    {"material", OPTION_MATERIAL, "NAME", 0,
-     "of which the stone is; without it, the index that the design says", 0},
-    {"table", OPTION_TABLE, "FILE", ABBE_ARGUMENT_READS,
-     "of materials: a file, default or thesis (default)", 0},
-    {"width", OPTION_WIDTH, "LENGTH", 0,
-     "of the stone, its smaller extent, such as 6.5mm or 0.2in; a bare number is of mm", 0},
-    {"density", OPTION_DENSITY, "G/CM3", 0, "where the material's record has none", 0},
-    {"weld", OPTION_WELD, "SHARE", 0,
+static const abbe_option options[] = {
+    {"material", 0, "NAME", 0, "of which the stone is; without it, the index that the design says",
+     0, ABBE_TAKE_TEXT(abbe_gem_input, material_name)},
+    {"table", 0, "FILE", ABBE_ARGUMENT_READS, "of materials: a file, default or thesis (default)",
+     0, ABBE_TAKE_TEXT(abbe_gem_input, table_path)},
+    {"width", 0, "LENGTH", 0,
+     "of the stone, its smaller extent, such as 6.5mm or 0.2in; a bare number is of mm", 0,
+     ABBE_TAKE_LENGTH(abbe_gem_input, width_m, 1e-6, 1e3)},
+    {"density", 0, "G/CM3", 0, "where the material's record has none", 0,
+     ABBE_TAKE_NUMBER(abbe_gem_input, density_g_cm3, 0.1, 50)},
+    {"weld", 0, "SHARE", 0,
      "corners nearer than this share of half the width are one (1e-6); 1e-4 closes meets that were "
      "cut by eye",
-     0},
-    {"json", OPTION_JSON, NULL, 0, "as JSON, numbers in full", 0},
-    {"quiet", 'q', NULL, 0, "no notes", 0},
+     0, ABBE_TAKE_NUMBER(abbe_gem_input, weld, 1e-12, ABBE_CUT_MOST_WELD)},
+    {"json", 0, NULL, 0, "as JSON, numbers in full", 0, ABBE_TAKE_FLAG(abbe_gem_input, json)},
+    {"quiet", 'q', NULL, 0, "no notes", 0, ABBE_TAKE_FLAG(abbe_gem_input, quiet)},
+    ABBE_NEEDED(abbe_gem_input, path,
+                "which design? Give a file such as scenes/designs/brilliant-quartz.asc"),
     {0}};
-
-static const abbe_take takes[] = {
-    ABBE_TAKE_TEXT(abbe_gem_input, OPTION_MATERIAL, material_name),
-    ABBE_TAKE_TEXT(abbe_gem_input, OPTION_TABLE, table_path),
-    ABBE_TAKE_LENGTH(abbe_gem_input, OPTION_WIDTH, width_m, 1e-6, 1e3),
-    ABBE_TAKE_NUMBER(abbe_gem_input, OPTION_DENSITY, density_g_cm3, 0.1, 50),
-    ABBE_TAKE_NUMBER(abbe_gem_input, OPTION_WELD, weld, 1e-12, ABBE_CUT_MOST_WELD),
-    ABBE_TAKE_FLAG(abbe_gem_input, OPTION_JSON, json),
-    ABBE_TAKE_FLAG(abbe_gem_input, 'q', quiet),
-    ABBE_TAKE_NEEDED(abbe_gem_input, path,
-                     "which design? Give a file such as scenes/designs/brilliant-quartz.asc"),
-    {0},
-};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   abbe_gem_input *in = state->input;
-  if (abbe_take_option(takes, key, text, state)) return 0;
   if (key != ARGP_KEY_ARG) return ARGP_ERR_UNKNOWN;
   if (in->path != NULL) argp_error(state, "one design at a time: '%s' and '%s'", in->path, text);
   in->path = text;
   return 0;
 }
 
-const struct argp abbe_gem_input_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
+const abbe_parser abbe_gem_input_argp = {.options = options, .parse = parse};
 
 static void print_notes(const abbe_gem_input *in) {
   for (size_t i = 0; i < in->report.count; i++) {

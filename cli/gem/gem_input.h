@@ -4,6 +4,7 @@
 #define ABBE_CLI_GEM_GEM_INPUT_H
 
 #include "base/report.h"
+#include "cli/base/arguments.h"
 #include "colorimetry/weights.h"
 #include "scenes/cuts/cut.h"
 #include "scenes/cuts/cut_polyhedron.h"
@@ -11,7 +12,6 @@
 #include "spectral/materials/material_table.h"
 #include "validation/measure/gem/gem_stone.h"
 
-#include <argp.h>
 #include <stdbool.h>
 
 /* Keys of abbe_gem_input_argp's options; a verb's own begin at ABBE_GEM_KEY_OWN. */
@@ -35,7 +35,7 @@ typedef struct abbe_gem_input {
 
 /* FILE, --material, --table, --width, --density, --weld, --json, --quiet. Its input is the
  * abbe_gem_input. */
-extern const struct argp abbe_gem_input_argp;
+extern const abbe_parser abbe_gem_input_argp;
 
 /* Reads the file and finds its stone; a path that leads nowhere is looked for beside the program,
  * as scenes are. Notes go to stderr unless quiet. */

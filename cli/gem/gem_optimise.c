@@ -10,7 +10,6 @@
 #include "validation/measure/gem/gem_maps.h"
 #include "validation/measure/gem/gem_optimum.h"
 
-#include <argp.h>
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -18,23 +17,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum {
-  KEY_MEASURE = 0x100,
-  KEY_CROWN,
-  KEY_PAVILION,
-  KEY_GRID,
-  KEY_PLOT,
-  KEY_HEAD,
-  KEY_TILT,
-  KEY_AXIS,
-  KEY_SEARCH,
-  KEY_RANGE,
-  KEY_SIZE,
-  KEY_THREADS,
-  KEY_PART,
-  KEY_PAIRS,
-  KEY_MERGE
-};
+enum { KEY_MEASURE = 0x100, KEY_CROWN, KEY_PAVILION, KEY_TILT, KEY_AXIS, KEY_SEARCH, KEY_PART };
 
 /* Those of which more, or less, is wanted whatever the stone. */
 static const struct {
@@ -62,38 +45,53 @@ typedef struct request {
   int measure, search;
 } request;
 
-static const struct argp_option options[] = {
+static const abbe_option options[] = {
     {"measure", KEY_MEASURE, "NAME", 0,
      "iso, cos, gemray-iso, gemray-cos, gemray-sc2, return (with the head's shadow) or leakage "
      "(the least of it); without it, iso",
-     0},
+     0, ABBE_TAKE_BY_KEY},
     {"crown", KEY_CROWN, "FROM:TO", 0,
-     "degrees of its main facets; without it, 8 to either side of the design's", 0},
-    {"pavilion", KEY_PAVILION, "FROM:TO", 0, "likewise; without it, 4 to either side", 0},
-    {"grid", KEY_GRID, "CROWNSxPAVILIONS", 0, "angles tried; without it, 21x21", 0},
+     "degrees of its main facets; without it, 8 to either side of the design's", 0,
+     ABBE_TAKE_BY_KEY},
+    {"pavilion", KEY_PAVILION, "FROM:TO", 0, "likewise; without it, 4 to either side", 0,
+     ABBE_TAKE_BY_KEY},
+    {"grid", 0, "CROWNSxPAVILIONS", 0, "angles tried; without it, 21x21", 0,
+     ABBE_TAKE_SIZE(request, crowns, pavilions, ABBE_GEM_MOST_ANGLES)},
     {"search", KEY_SEARCH, "NAME", 0,
      "grid; angles (in the same ranges, by derivatives); tiers (every tier by itself, all meets "
      "kept); or front (tiers, for the measure and for fire in four mixtures; FILE.asc becomes "
      "FILE-1.asc and so on); without it, grid",
-     0},
-    {"output", 'o', "FILE.asc", ABBE_ARGUMENT_WRITES, "the best design", 0},
-    {"plot", KEY_PLOT, "FILE", ABBE_ARGUMENT_WRITES, "the measure over both angles; .png or .svg",
-     0},
-    {"head-shadow", KEY_HEAD, "DEGREES", 0,
-     "half angle of the viewer's head, 0 to below 45; without it, 15", 0},
+     0, ABBE_TAKE_BY_KEY},
+    {"output", 'o', "FILE.asc", ABBE_ARGUMENT_WRITES, "the best design", 0,
+     ABBE_TAKE_TARGET(request, out, ".asc")},
+    {"plot", 0, "FILE", ABBE_ARGUMENT_WRITES, "the measure over both angles; .png or .svg", 0,
+     ABBE_TAKE_TEXT(request, plot)},
+    {"head-shadow", 0, "DEGREES", 0,
+     "half angle of the viewer's head, 0 to below 45; without it, 15", 0,
+     ABBE_TAKE_NUMBER(request, head_deg, 0, 44.999)},
     {"tilt", KEY_TILT, "DEGREES[,AZIMUTH]", 0,
-     "judge the stone so tilted about the horizontal axis of that azimuth; without it, level", 0},
+     "judge the stone so tilted about the horizontal axis of that azimuth; without it, level", 0,
+     ABBE_TAKE_BY_KEY},
     {"axis", KEY_AXIS, "X,Y,Z or TILTSxAZIMUTHS", 0,
      "how a crystal lies in its cut, as abbe gem report has it; or so many ways are tried, and the "
      "angles kept",
-     0},
-    {"range", KEY_RANGE, "FROM:TO", 0, "wavelengths, nm; without it, 380:780", 0},
-    {"size", KEY_SIZE, "PIXELS", 0, "a side of the view, of 4 rays a pixel; without it, 32", 0},
-    {"threads", KEY_THREADS, "N", 0, "without it, all; results do not depend on it", 0},
+     0, ABBE_TAKE_BY_KEY},
+    {"range", 0, "FROM:TO", 0, "wavelengths, nm; without it, 380:780", 0,
+     ABBE_TAKE_RANGE(request, stone.from_nm, stone.to_nm)},
+    {"size", 0, "PIXELS", 0, "a side of the view, of 4 rays a pixel; without it, 32", 0,
+     ABBE_TAKE_COUNT(request, size, 8, ABBE_GEM_MOST_SIDE)},
+    {"threads", 0, "N", 0, "without it, all; results do not depend on it", 0,
+     ABBE_TAKE_COUNT(request, threads, 1, 1024)},
     {"part", KEY_PART, "K/N", 0,
-     "judge every N-th pair alone, from the K-th on, 0/8 to 7/8; with --pairs", 0},
-    {"pairs", KEY_PAIRS, "FILE.csv", ABBE_ARGUMENT_WRITES, "the pairs that were judged", 0},
-    {"merge", KEY_MERGE, NULL, 0, "judge nothing: take the tables that follow the design", 0},
+     "judge every N-th pair alone, from the K-th on, 0/8 to 7/8; with --pairs", 0,
+     ABBE_TAKE_BY_KEY},
+    {"pairs", 0, "FILE.csv", ABBE_ARGUMENT_WRITES, "the pairs that were judged", 0,
+     ABBE_TAKE_TARGET(request, pairs, ".csv")},
+    {"merge", 0, NULL, 0, "judge nothing: take the tables that follow the design", 0,
+     ABBE_TAKE_FLAG(request, merge)},
+    ABBE_OPTIONS(request, &abbe_gem_input_argp, stone.in, NULL, 0),
+    ABBE_NEEDED(request, stone.in.material_name,
+                "of which stone? Give --material NAME; 'abbe materials list' has them"),
     {0}};
 
 static void read_angles(const request *q, const char *option, const char *text, double angle[2]) {
@@ -149,25 +147,8 @@ static void check_parts(const request *q, struct argp_state *state) {
                q->crowns * q->pavilions);
 }
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_SIZE(request, KEY_GRID, crowns, pavilions, ABBE_GEM_MOST_ANGLES),
-    ABBE_TAKE_TARGET(request, 'o', out, ".asc"),
-    ABBE_TAKE_TEXT(request, KEY_PLOT, plot),
-    ABBE_TAKE_CHILD(request, 0, stone.in),
-    ABBE_TAKE_NUMBER(request, KEY_HEAD, head_deg, 0, 44.999),
-    ABBE_TAKE_RANGE(request, KEY_RANGE, stone.from_nm, stone.to_nm),
-    ABBE_TAKE_COUNT(request, KEY_SIZE, size, 8, ABBE_GEM_MOST_SIDE),
-    ABBE_TAKE_COUNT(request, KEY_THREADS, threads, 1, 1024),
-    ABBE_TAKE_TARGET(request, KEY_PAIRS, pairs, ".csv"),
-    ABBE_TAKE_FLAG(request, KEY_MERGE, merge),
-    ABBE_TAKE_NEEDED(request, stone.in.material_name,
-                     "of which stone? Give --material NAME; 'abbe materials list' has them"),
-    {0},
-};
-
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *q = state->input;
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case KEY_MEASURE:
     read_measure(q, arg);
@@ -399,11 +380,8 @@ static abbe_result run(request *q, abbe_error *error) {
 }
 
 int abbe_gem_optimise(int argc, char **argv) {
-  static const struct argp_child children[] = {{&abbe_gem_input_argp, 0, NULL, 0}, {0}};
-  static const struct argp argp = {
-      options,
-      parse,
-      "FILE\nFILE --merge TABLE.csv...",
+  static const abbe_parser argp = {
+      options, parse, "FILE\nFILE --merge TABLE.csv...",
       "Tries pairs of crown and pavilion angles for a design in a stone, all its meets kept, and "
       "says which is best by a measure.\v"
       "Examples:\n"
@@ -414,10 +392,7 @@ int abbe_gem_optimise(int argc, char **argv) {
       "  abbe gem optimise brilliant.asc --material tanzanite --axis 4x4\n"
       "  abbe gem optimise pear.asc --material ruby --grid 201x201 --part 3/8 --pairs part-3.csv\n"
       "  abbe gem optimise pear.asc --material ruby --grid 201x201 --merge part-*.csv -o "
-      "best.asc\n",
-      children,
-      NULL,
-      NULL};
+      "best.asc\n"};
   request q = {.stone = {.in = {.program = argv[0]}, .count = 6},
                .head_deg = ABBE_GEM_HEAD_DEG,
                .crowns = 21,

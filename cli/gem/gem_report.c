@@ -5,24 +5,7 @@
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
 
-#include <argp.h>
 #include <stdio.h>
-
-enum {
-  KEY_CSV = 0x100,
-  KEY_MAPS,
-  KEY_PICTURE,
-  KEY_IDEAL,
-  KEY_HEAD,
-  KEY_AXIS,
-  KEY_TILT,
-  KEY_STEP,
-  KEY_RANGE,
-  KEY_WAVELENGTHS,
-  KEY_SIZE,
-  KEY_REPEATS,
-  KEY_THREADS
-};
 
 typedef struct request {
   abbe_gem_stone_input stone;
@@ -32,58 +15,49 @@ typedef struct request {
   bool csv;
 } request;
 
-static const struct argp_option options[] = {
-    {"output", 'o', "FILE.pdf", ABBE_ARGUMENT_WRITES, "the report as pages", 0},
-    {"csv", KEY_CSV, NULL, 0, "all numbers as CSV", 0},
-    {"maps", KEY_MAPS, "FOLDER", ABBE_ARGUMENT_ONCE,
-     "maps.exr and a PNG of each map, into a folder that is there", 0},
-    {"picture", KEY_PICTURE, "FILE.png", ABBE_ARGUMENT_READS,
-     "of the stone, by abbe render, for the first page of -o; without it, its light return", 0},
-    {"ideal", KEY_IDEAL, "FILE", ABBE_ARGUMENT_READS,
+static const abbe_option options[] = {
+    {"output", 'o', "FILE.pdf", ABBE_ARGUMENT_WRITES, "the report as pages", 0,
+     ABBE_TAKE_TARGET(request, out, ".pdf")},
+    {"csv", 0, NULL, 0, "all numbers as CSV", 0, ABBE_TAKE_FLAG(request, csv)},
+    {"maps", 0, "FOLDER", ABBE_ARGUMENT_ONCE,
+     "maps.exr and a PNG of each map, into a folder that is there", 0,
+     ABBE_TAKE_TEXT(request, maps)},
+    {"picture", 0, "FILE.png", ABBE_ARGUMENT_READS,
+     "of the stone, by abbe render, for the first page of -o; without it, its light return", 0,
+     ABBE_TAKE_TEXT(request, picture)},
+    {"ideal", 0, "FILE", ABBE_ARGUMENT_READS,
      "design that stands beside it on that page; without it, angles of an ideal round "
      "brilliant, or those that return most light",
-     0},
-    {"axis", KEY_AXIS, "X,Y,Z", 0,
+     0, ABBE_TAKE_TEXT(request, ideal)},
+    {"axis", 0, "X,Y,Z", 0,
      "the optic axis of a crystal in its cut, z up; of one of three indices six numbers, its axes "
      "z "
      "and x. Without it, 0,0,1",
-     0},
-    {"head-shadow", KEY_HEAD, "DEGREES", 0,
-     "half angle of the viewer's head, 0 to below 45; without it, 15", 0},
-    {"tilt", KEY_TILT, "DEGREES", 0,
+     0, ABBE_TAKE_TEXT(request, stone.axis)},
+    {"head-shadow", 0, "DEGREES", 0,
+     "half angle of the viewer's head, 0 to below 45; without it, 15", 0,
+     ABBE_TAKE_NUMBER(request, head_deg, 0, 44.999)},
+    {"tilt", 0, "DEGREES", 0,
      "rock the stone so far to either side, up to 90; 0: not at all, and no fire. Without it, 30",
-     0},
-    {"step", KEY_STEP, "DEGREES", 0, "of the tilt; without it, 2", 0},
-    {"range", KEY_RANGE, "FROM:TO", 0, "wavelengths, nm; without it, 380:780", 0},
-    {"wavelengths", KEY_WAVELENGTHS, "N", 0, "how many; without it, 16", 0},
-    {"size", KEY_SIZE, "PIXELS", 0,
-     "a side of the maps, eight times that of each tilt; without it, 96", 0},
-    {"repeats", KEY_REPEATS, "N", 0, "rays in a pixel, 3 to 64; without it, 4", 0},
-    {"threads", KEY_THREADS, "N", 0, "without it, all; results do not depend on it", 0},
+     0, ABBE_TAKE_NUMBER(request, tilt_deg, 0, 90)},
+    {"step", 0, "DEGREES", 0, "of the tilt; without it, 2", 0,
+     ABBE_TAKE_NUMBER(request, step_deg, 0.1, 90)},
+    {"range", 0, "FROM:TO", 0, "wavelengths, nm; without it, 380:780", 0,
+     ABBE_TAKE_RANGE(request, stone.from_nm, stone.to_nm)},
+    {"wavelengths", 0, "N", 0, "how many; without it, 16", 0,
+     ABBE_TAKE_COUNT(request, stone.count, 1, 256)},
+    {"size", 0, "PIXELS", 0, "a side of the maps, eight times that of each tilt; without it, 96", 0,
+     ABBE_TAKE_COUNT(request, size, 8, ABBE_GEM_MOST_SIDE)},
+    {"repeats", 0, "N", 0, "rays in a pixel, 3 to 64; without it, 4", 0,
+     ABBE_TAKE_COUNT(request, repeats, 3, ABBE_GEM_MOST_REPEATS)},
+    {"threads", 0, "N", 0, "without it, all; results do not depend on it", 0,
+     ABBE_TAKE_COUNT(request, threads, 1, 1024)},
+    ABBE_OPTIONS(request, &abbe_gem_input_argp, stone.in, NULL, 0),
     {0}};
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_TARGET(request, 'o', out, ".pdf"),
-    ABBE_TAKE_FLAG(request, KEY_CSV, csv),
-    ABBE_TAKE_TEXT(request, KEY_PICTURE, picture),
-    ABBE_TAKE_TEXT(request, KEY_IDEAL, ideal),
-    ABBE_TAKE_TEXT(request, KEY_MAPS, maps),
-    ABBE_TAKE_TEXT(request, KEY_AXIS, stone.axis),
-    ABBE_TAKE_NUMBER(request, KEY_HEAD, head_deg, 0, 44.999),
-    ABBE_TAKE_NUMBER(request, KEY_TILT, tilt_deg, 0, 90),
-    ABBE_TAKE_NUMBER(request, KEY_STEP, step_deg, 0.1, 90),
-    ABBE_TAKE_CHILD(request, 0, stone.in),
-    ABBE_TAKE_RANGE(request, KEY_RANGE, stone.from_nm, stone.to_nm),
-    ABBE_TAKE_COUNT(request, KEY_WAVELENGTHS, stone.count, 1, 256),
-    ABBE_TAKE_COUNT(request, KEY_SIZE, size, 8, ABBE_GEM_MOST_SIDE),
-    ABBE_TAKE_COUNT(request, KEY_REPEATS, repeats, 3, ABBE_GEM_MOST_REPEATS),
-    ABBE_TAKE_COUNT(request, KEY_THREADS, threads, 1, 1024),
-    {0},
-};
-
 static error_t parse(int key, char *arg, struct argp_state *state) {
+  (void)arg;
   const request *q = state->input;
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   if (key != ARGP_KEY_END) return ARGP_ERR_UNKNOWN;
   if ((q->picture != NULL || q->ideal != NULL) && q->out == NULL)
     argp_error(state, "--%s: on which page? Give -o FILE.pdf",
@@ -156,11 +130,8 @@ static abbe_result run(request *q, abbe_error *error) {
 }
 
 int abbe_gem_report(int argc, char **argv) {
-  static const struct argp_child children[] = {{&abbe_gem_input_argp, 0, NULL, 0}, {0}};
-  static const struct argp argp = {
-      options,
-      parse,
-      "FILE",
+  static const abbe_parser argp = {
+      options, parse, "FILE",
       "Judges a cut in a stone by what an eye above it sees: brightness, leakage, ASET, "
       "extinction, contrast, fire and scintillation, each with its standard error.\v"
       "Without --width the stone is 6.5 mm wide, which matters where it has colour. What each "
@@ -169,10 +140,7 @@ int abbe_gem_report(int argc, char **argv) {
       "  abbe gem report brilliant.asc --material diamond\n"
       "  abbe gem report brilliant.asc --material quartz -o report.pdf --maps maps\n"
       "  abbe gem report brilliant.asc --material ruby --width 6mm -o ruby.pdf --picture ruby.png\n"
-      "  abbe gem report brilliant.asc --material diamond --head-shadow 10 --tilt 0 --json\n",
-      children,
-      NULL,
-      NULL};
+      "  abbe gem report brilliant.asc --material diamond --head-shadow 10 --tilt 0 --json\n"};
   request q = {.stone = {.in = {.program = argv[0]}, .count = 16},
                .head_deg = ABBE_GEM_HEAD_DEG,
                .tilt_deg = 30,

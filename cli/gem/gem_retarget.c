@@ -13,8 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTION_INDEX = 0x100, OPTION_CROWN, OPTION_PAVILION, OPTION_FROM };
-
 typedef struct side {
   bool is_there;
   double from_deg, to_deg, factor;
@@ -27,31 +25,26 @@ typedef struct request {
   side crown, pavilion;
 } request;
 
-static const struct argp_option options[] = {
-    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "the design: .asc, .gem or .gcs, or a solid", 0},
-    {"index", OPTION_INDEX, "N", 0, "to be cut for, where no material is named", 0},
-    {"from-index", OPTION_FROM, "N", 0, "that the design was made for, where it does not say", 0},
-    {"pavilion", OPTION_PAVILION, "DEG", 0,
+static const abbe_option options[] = {
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "the design: .asc, .gem or .gcs, or a solid", 0,
+     ABBE_TAKE_TEXT(request, output)},
+    {"index", 0, "N", 0, "to be cut for, where no material is named", 0,
+     ABBE_TAKE_NUMBER(request, index, 1.01, 5)},
+    {"from-index", 0, "N", 0, "that the design was made for, where it does not say", 0,
+     ABBE_TAKE_NUMBER(request, from, 1.01, 5)},
+    {"pavilion", 0, "DEG", 0,
      "angle of the pavilion's main facets; without it, as far from the middle of the window of "
      "total reflection as it was",
-     0},
-    {"crown", OPTION_CROWN, "DEG", 0,
-     "angle of the crown's main facets; without it, by the pavilion's tangent ratio", 0},
+     0, ABBE_TAKE_NUMBER(request, pavilion_deg, 1, 85)},
+    {"crown", 0, "DEG", 0,
+     "angle of the crown's main facets; without it, by the pavilion's tangent ratio", 0,
+     ABBE_TAKE_NUMBER(request, crown_deg, 1, 85)},
+    ABBE_OPTIONS(request, &abbe_gem_input_argp, in, NULL, 0),
     {0}};
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_CHILD(request, 0, in),
-    ABBE_TAKE_TEXT(request, 'o', output),
-    ABBE_TAKE_NUMBER(request, OPTION_INDEX, index, 1.01, 5),
-    ABBE_TAKE_NUMBER(request, OPTION_FROM, from, 1.01, 5),
-    ABBE_TAKE_NUMBER(request, OPTION_CROWN, crown_deg, 1, 85),
-    ABBE_TAKE_NUMBER(request, OPTION_PAVILION, pavilion_deg, 1, 85),
-    {0},
-};
-
 static error_t parse(int key, char *text, struct argp_state *state) {
+  (void)text;
   const request *q = state->input;
-  if (abbe_take_option(takes, key, text, state)) return 0;
   if (key != ARGP_KEY_END) return ARGP_ERR_UNKNOWN;
   if (q->in.material_name == NULL && q->index == 0 && q->crown_deg == 0 && q->pavilion_deg == 0)
     argp_error(state, "for which stone? Give --material NAME, --index N, or angles by --pavilion "
@@ -191,11 +184,8 @@ static abbe_result retarget(request *q, abbe_error *error) {
 }
 
 int abbe_gem_retarget(int argc, char **argv) {
-  static const struct argp_child children[] = {{&abbe_gem_input_argp, 0, NULL, 0}, {0}};
-  static const struct argp argp = {
-      options,
-      parse,
-      "FILE",
+  static const abbe_parser argp = {
+      options, parse, "FILE",
       "Changes a design's angles for another stone, and keeps its meets.\v"
       "All tangents of a side are multiplied by one ratio, so that what met still meets and the "
       "outline stays.\n\n"
@@ -203,10 +193,7 @@ int abbe_gem_retarget(int argc, char **argv) {
       "  abbe gem retarget scenes/designs/brilliant-quartz.asc --material sapphire -o "
       "sapphire.asc\n"
       "  abbe gem retarget scenes/designs/brilliant-quartz.asc --index 1.62 --crown 38\n"
-      "  abbe gem retarget stone.gem --pavilion 41 --crown 36 -o stone-41.gem",
-      children,
-      NULL,
-      NULL};
+      "  abbe gem retarget stone.gem --pavilion 41 --crown 36 -o stone-41.gem"};
   request q = {.in.program = argv[0]};
   abbe_error error = {0};
   abbe_cut_measures before = {0};

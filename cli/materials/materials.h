@@ -41,20 +41,19 @@ ABBE_MATERIALS_VERBS(ABBE_MATERIALS_DECLARE)
 
 /* The options that several verbs of `abbe materials` have, and wrong use. */
 
-/* Rows of an argp_option list that several verbs have, and their keys; a verb's own keys begin at
- * ABBE_MATERIALS_KEY_OWN. */
-enum { ABBE_MATERIALS_KEY_TABLE = 256, ABBE_MATERIALS_KEY_JSON, ABBE_MATERIALS_KEY_OWN };
-#define ABBE_MATERIALS_TABLE_OPTION                                                                \
+/* Rows of options that several verbs have; a verb's own keys begin at ABBE_MATERIALS_KEY_OWN. */
+enum { ABBE_MATERIALS_KEY_OWN = 256 };
+#define ABBE_MATERIALS_TABLE_OPTION(request, field)                                                \
   {                                                                                                \
-    "table", ABBE_MATERIALS_KEY_TABLE, "FILE", ABBE_ARGUMENT_READS,                                \
-        "a table file, or default or thesis; without it, default", 0                               \
+    "table", 0, "FILE", ABBE_ARGUMENT_READS,                                                       \
+        "a table file, or default or thesis; without it, default", 0,                              \
+        ABBE_TAKE_TEXT(request, field)                                                             \
   }
-#define ABBE_MATERIALS_JSON_OPTION                                                                 \
-  { "json", ABBE_MATERIALS_KEY_JSON, NULL, 0, "as JSON, numbers in full", 0 }
+#define ABBE_MATERIALS_JSON_OPTION(request, field)                                                 \
+  { "json", 0, NULL, 0, "as JSON, numbers in full", 0, ABBE_TAKE_FLAG(request, field) }
 
-struct argp;
 /* abbe_arguments_parse for verbs whose arguments are no files. */
-void abbe_materials_parse(const struct argp *parser, int argc, char **argv, void *request);
+void abbe_materials_parse(const abbe_parser *parser, int argc, char **argv, void *request);
 /* Prints "PROGRAM: sentence" and where help is, and ends the program with ABBE_EXIT_USAGE. */
 _Noreturn void abbe_materials_wrong_use(const char *program, const char *sentence);
 
@@ -105,15 +104,6 @@ void abbe_materials_print_report(const char *program, const abbe_report *report,
 void abbe_materials_add_report(cJSON *to, const abbe_report *report);
 
 /* What the verbs that change a table share: open, say, write. */
-
-/* The options that all of them have. */
-enum { ABBE_CHANGE_KEY_DRY_RUN = ABBE_MATERIALS_KEY_OWN, ABBE_CHANGE_KEY_OWN };
-#define ABBE_CHANGE_OPTIONS                                                                        \
-  {"table", ABBE_MATERIALS_KEY_TABLE, "FILE", ABBE_ARGUMENT_READS, "the table file to change", 0}, \
-  {                                                                                                \
-    "dry-run", ABBE_CHANGE_KEY_DRY_RUN, NULL, 0,                                                   \
-        "say what the change does to the numbers, and write nothing", 0                            \
-  }
 
 typedef struct abbe_change {
   const char *program, *table;

@@ -9,19 +9,25 @@
 #include "spectral/materials/material_table.h"
 #include "spectral/store/material_store.h"
 
-#include <argp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <unistd.h>
 
-/* Takes one of the two options; false for any other key. */
-static bool change_option(abbe_change *change, int key, const char *arg) {
-  if (key == ABBE_MATERIALS_KEY_TABLE) change->table = arg;
-  if (key == ABBE_CHANGE_KEY_DRY_RUN) change->dry_run = true;
-  return key == ABBE_MATERIALS_KEY_TABLE || key == ABBE_CHANGE_KEY_DRY_RUN;
-}
+/* The options that all of them have. */
+#define CHANGE_OPTIONS(request)                                                                    \
+  {"table",                                                                                        \
+   0,                                                                                              \
+   "FILE",                                                                                         \
+   ABBE_ARGUMENT_READS,                                                                            \
+   "the table file to change",                                                                     \
+   0,                                                                                              \
+   ABBE_TAKE_TEXT(request, change.table)},                                                         \
+  {                                                                                                \
+    "dry-run", 0, NULL, 0, "say what the change does to the numbers, and write nothing", 0,        \
+        ABBE_TAKE_FLAG(request, change.dry_run)                                                    \
+  }
 
 abbe_result abbe_change_check_table(const char *table, abbe_error *error) {
   size_t size;
@@ -154,7 +160,6 @@ static int change_end(abbe_change *change, abbe_result result, const char *what,
 }
 
 enum { MAX_CHANGES = 64, MAX_RECORD = 1 << 20 };
-enum { KEY_FROM = ABBE_CHANGE_KEY_OWN, KEY_AS, KEY_RECORD, KEY_CREATE };
 
 typedef struct request {
   abbe_change change;
@@ -164,28 +169,21 @@ typedef struct request {
   bool create;
 } request;
 
-static const struct argp_option options[] = {
-    ABBE_CHANGE_OPTIONS,
-    {"from", KEY_FROM, "TABLE", ABBE_ARGUMENT_READS,
-     "copy the record from this table file, or from default or thesis, comments and all", 0},
-    {"as", KEY_AS, "NEW", 0, "under this name (with --from)", 0},
-    {"record", KEY_RECORD, "FILE", ABBE_ARGUMENT_READS,
-     "the record itself as YAML, as other verbs print it; - reads it from the input", 0},
-    {"create", KEY_CREATE, NULL, 0, "make the table's file, where there is none yet", 0},
+static const abbe_option options[] = {
+    CHANGE_OPTIONS(request),
+    {"from", 0, "TABLE", ABBE_ARGUMENT_READS,
+     "copy the record from this table file, or from default or thesis, comments and all", 0,
+     ABBE_TAKE_TEXT(request, from)},
+    {"as", 0, "NEW", 0, "under this name (with --from)", 0, ABBE_TAKE_TEXT(request, as)},
+    {"record", 0, "FILE", ABBE_ARGUMENT_READS,
+     "the record itself as YAML, as other verbs print it; - reads it from the input", 0,
+     ABBE_TAKE_TEXT(request, record)},
+    {"create", 0, NULL, 0, "make the table's file, where there is none yet", 0,
+     ABBE_TAKE_FLAG(request, create)},
     {0}};
-
-static const abbe_take takes[] = {
-    ABBE_TAKE_TEXT(request, KEY_FROM, from),
-    ABBE_TAKE_TEXT(request, KEY_AS, as),
-    ABBE_TAKE_TEXT(request, KEY_RECORD, record),
-    ABBE_TAKE_FLAG(request, KEY_CREATE, create),
-    {0},
-};
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
-  if (change_option(&r->change, key, arg)) return 0;
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case ARGP_KEY_ARG:
     if (r->name == NULL && strchr(arg, '=') == NULL) {
@@ -202,9 +200,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   }
 }
 
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
+    .parse = parse,
     .args_doc = "NAME KEY=VALUE…\nNAME --from TABLE [KEY=VALUE…]\n--record FILE",
     .doc = "Adds a record at the end of a table's file; the rest of it stays byte by byte.\v"
            "Examples:\n"
@@ -350,20 +348,20 @@ typedef struct materials_remove_request {
   size_t count;
 } materials_remove_request;
 
-static const struct argp_option materials_remove_options[] = {ABBE_CHANGE_OPTIONS, {0}};
+static const abbe_option materials_remove_options[] = {CHANGE_OPTIONS(materials_remove_request),
+                                                       {0}};
 
 static error_t materials_remove_parse(int key, char *arg, struct argp_state *state) {
   materials_remove_request *r = state->input;
-  if (change_option(&r->change, key, arg)) return 0;
   if (key != ARGP_KEY_ARG) return ARGP_ERR_UNKNOWN;
   if (r->count == MAX_NAMES) argp_error(state, "more than %d names", MAX_NAMES);
   r->name[r->count++] = arg;
   return 0;
 }
 
-static const struct argp materials_remove_parser = {
+static const abbe_parser materials_remove_parser = {
     .options = materials_remove_options,
-    .parser = materials_remove_parse,
+    .parse = materials_remove_parse,
     .args_doc = "NAME…",
     .doc = "Takes records out of a table's file; the rest of it stays byte by byte.\v"
            "Examples:\n"
@@ -388,7 +386,7 @@ int abbe_materials_remove(int argc, char **argv) {
   return change_end(&r.change, result, what, NULL, &error);
 }
 
-enum { MATERIALS_SET_MAX_CHANGES = 64, KEY_UNSET = ABBE_CHANGE_KEY_OWN };
+enum { MATERIALS_SET_MAX_CHANGES = 64, KEY_UNSET = ABBE_MATERIALS_KEY_OWN };
 
 typedef struct materials_set_request {
   abbe_change change;
@@ -397,14 +395,14 @@ typedef struct materials_set_request {
   size_t assign_count, unset_count;
 } materials_set_request;
 
-static const struct argp_option materials_set_options[] = {
-    ABBE_CHANGE_OPTIONS,
-    {"unset", KEY_UNSET, "KEY", 0, "take the key out of the record; may be repeated", 0},
+static const abbe_option materials_set_options[] = {
+    CHANGE_OPTIONS(materials_set_request),
+    {"unset", KEY_UNSET, "KEY", 0, "take the key out of the record; may be repeated", 0,
+     ABBE_TAKE_BY_KEY},
     {0}};
 
 static error_t materials_set_parse(int key, char *arg, struct argp_state *state) {
   materials_set_request *r = state->input;
-  if (change_option(&r->change, key, arg)) return 0;
   if (key != ARGP_KEY_ARG && key != KEY_UNSET) return ARGP_ERR_UNKNOWN;
   if (key == ARGP_KEY_ARG && r->name == NULL) {
     r->name = arg;
@@ -423,9 +421,9 @@ static error_t materials_set_parse(int key, char *arg, struct argp_state *state)
   return 0;
 }
 
-static const struct argp materials_set_parser = {
+static const abbe_parser materials_set_parser = {
     .options = materials_set_options,
-    .parser = materials_set_parse,
+    .parse = materials_set_parse,
     .args_doc = "NAME KEY=VALUE…",
     .doc =
         "Changes values of one record, and not a byte of the rest of the file.\v"

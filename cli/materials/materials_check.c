@@ -4,7 +4,6 @@
 #include "spectral/editing/table_edit.h"
 #include "spectral/formats/material_import.h"
 
-#include <argp.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -185,39 +184,23 @@ static abbe_result fix(const request *r, const abbe_material_table *known, abbe_
 
 /* ---- arguments ---- */
 
-enum { KEY_KNOWN = ABBE_MATERIALS_KEY_OWN, KEY_FIX, KEY_DRY_RUN, KEY_ALL };
-
-static const struct argp_option options[] = {
-    ABBE_MATERIALS_TABLE_OPTION,
-    {"known", KEY_KNOWN, "FILE", ABBE_ARGUMENT_READS,
-     "a table of materials that are known, to compare with; without it, default", 0},
-    {"fix", KEY_FIX, NULL, 0,
-     "put the fixes that are certain into the file, and check what is left", 0},
-    {"dry-run", KEY_DRY_RUN, NULL, 0, "with --fix: count what would be fixed, and write nothing",
-     0},
-    {"all", KEY_ALL, NULL, 0, "show every note, not one line for many of a kind", 0},
-    ABBE_MATERIALS_JSON_OPTION,
+static const abbe_option options[] = {
+    ABBE_MATERIALS_TABLE_OPTION(request, table),
+    {"known", 0, "FILE", ABBE_ARGUMENT_READS,
+     "a table of materials that are known, to compare with; without it, default", 0,
+     ABBE_TAKE_TEXT(request, known)},
+    {"fix", 0, NULL, 0, "put the fixes that are certain into the file, and check what is left", 0,
+     ABBE_TAKE_FLAG(request, fix)},
+    {"dry-run", 0, NULL, 0, "with --fix: count what would be fixed, and write nothing", 0,
+     ABBE_TAKE_FLAG(request, dry_run)},
+    {"all", 0, NULL, 0, "show every note, not one line for many of a kind", 0,
+     ABBE_TAKE_FLAG(request, all)},
+    ABBE_MATERIALS_JSON_OPTION(request, json),
+    ABBE_ARGUMENT(request, name),
     {0}};
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_TEXT(request, ABBE_MATERIALS_KEY_TABLE, table),
-    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
-    ABBE_TAKE_TEXT(request, KEY_KNOWN, known),
-    ABBE_TAKE_FLAG(request, KEY_FIX, fix),
-    ABBE_TAKE_FLAG(request, KEY_DRY_RUN, dry_run),
-    ABBE_TAKE_FLAG(request, KEY_ALL, all),
-    ABBE_TAKE_ARGUMENT(request, name),
-    {0},
-};
-
-static error_t parse(int key, char *arg, struct argp_state *state) {
-  if (abbe_take_option(takes, key, arg, state)) return 0;
-  return ARGP_ERR_UNKNOWN;
-}
-
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
     .args_doc = "[NAME]",
     .doc = "Looks for what is wrong or doubtful in a table, or in one of its materials.\v"
            "Examples:\n"

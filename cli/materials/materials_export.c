@@ -7,7 +7,6 @@
 #include "spectral/formats/material_write.h"
 #include "spectral/store/material_store.h"
 
-#include <argp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,32 +29,26 @@ typedef struct request {
   bool sampled, json, all, force;
 } request;
 
-enum { KEY_TO = ABBE_MATERIALS_KEY_OWN, KEY_RANGE, KEY_STEP, KEY_ALL, KEY_FORCE };
+enum { KEY_TO = ABBE_MATERIALS_KEY_OWN, KEY_RANGE, KEY_STEP };
 
-static const struct argp_option options[] = {
-    ABBE_MATERIALS_TABLE_OPTION,
+static const abbe_option options[] = {
+    ABBE_MATERIALS_TABLE_OPTION(request, table),
     {"to", KEY_TO, "FORMAT", 0,
-     "yaml, sqlite, agf, rii, csv, mtlx or exr; without it, by the ending of -o", 0},
+     "yaml, sqlite, agf, rii, csv, mtlx or exr; without it, by the ending of -o", 0,
+     ABBE_TAKE_BY_KEY},
     {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES | ABBE_ARGUMENT_STREAMS,
-     "where to; without it or as -, to standard output", 0},
-    {"force", KEY_FORCE, NULL, 0, "write over a file that is there", 0},
-    {"range", KEY_RANGE, "FROM:TO", 0, "nm, of the points (csv); 380:780 within the record's", 0},
-    {"step", KEY_STEP, "NM", 0, "between the points (csv); 5", 0},
-    {"all", KEY_ALL, NULL, 0, "show every note, not the first of each kind", 0},
-    {"json", ABBE_MATERIALS_KEY_JSON, NULL, 0, "the notes as JSON, with -o", 0},
+     "where to; without it or as -, to standard output", 0, ABBE_TAKE_BY_KEY},
+    {"force", 0, NULL, 0, "write over a file that is there", 0, ABBE_TAKE_FLAG(request, force)},
+    {"range", KEY_RANGE, "FROM:TO", 0, "nm, of the points (csv); 380:780 within the record's", 0,
+     ABBE_TAKE_BY_KEY},
+    {"step", KEY_STEP, "NM", 0, "between the points (csv); 5", 0, ABBE_TAKE_BY_KEY},
+    {"all", 0, NULL, 0, "show every note, not the first of each kind", 0,
+     ABBE_TAKE_FLAG(request, all)},
+    {"json", 0, NULL, 0, "the notes as JSON, with -o", 0, ABBE_TAKE_FLAG(request, json)},
     {0}};
-
-static const abbe_take takes[] = {
-    ABBE_TAKE_TEXT(request, ABBE_MATERIALS_KEY_TABLE, table),
-    ABBE_TAKE_FLAG(request, KEY_ALL, all),
-    ABBE_TAKE_FLAG(request, KEY_FORCE, force),
-    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
-    {0},
-};
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case KEY_TO:
     r->format = abbe_command_choice(r->program, "--to", arg, format_names, FORMATS);
@@ -80,9 +73,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   }
 }
 
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
+    .parse = parse,
     .args_doc = "[NAME…]",
     .doc = "Writes materials of a table in other forms: all of them, or those named.\v"
            "Examples:\n"

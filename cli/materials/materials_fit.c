@@ -7,7 +7,6 @@
 #include "spectral/formats/material_write.h"
 #include "spectral/wavelengths.h"
 
-#include <argp.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -288,54 +287,34 @@ static abbe_result answer(request *r, const abbe_material_table *table, abbe_err
 
 /* ---- arguments ---- */
 
-enum {
-  KEY_POINTS = ABBE_MATERIALS_KEY_OWN,
-  KEY_FORMULA,
-  KEY_FORM,
-  KEY_TERMS,
-  KEY_RANGE,
-  KEY_OVER,
-  KEY_RESIDUALS,
-  KEY_RECORD,
-  KEY_PLOT
-};
+enum { KEY_FORM = ABBE_MATERIALS_KEY_OWN, KEY_RANGE };
 
-static const struct argp_option options[] = {
-    {"points", KEY_POINTS, "FILE", ABBE_ARGUMENT_READS,
-     "fit measured points: columns of wavelength, n and, if known, its uncertainty", 0},
-    {"formula", KEY_FORMULA, "TEXT", ABBE_ARGUMENT_ONCE,
-     "fit a formula: a model and its coefficients", 0},
-    ABBE_MATERIALS_TABLE_OPTION,
-    {"form", KEY_FORM, "FORM", 0, "cauchy or sellmeier; without it, cauchy", 1},
-    {"terms", KEY_TERMS, "N", 0, "how many; without it, 2", 1},
+static const abbe_option options[] = {
+    {"points", 0, "FILE", ABBE_ARGUMENT_READS,
+     "fit measured points: columns of wavelength, n and, if known, its uncertainty", 0,
+     ABBE_TAKE_TEXT(request, points)},
+    {"formula", 0, "TEXT", ABBE_ARGUMENT_ONCE, "fit a formula: a model and its coefficients", 0,
+     ABBE_TAKE_TEXT(request, formula)},
+    ABBE_MATERIALS_TABLE_OPTION(request, table),
+    {"form", KEY_FORM, "FORM", 0, "cauchy or sellmeier; without it, cauchy", 1, ABBE_TAKE_BY_KEY},
+    {"terms", 0, "N", 0, "how many; without it, 2", 1, ABBE_TAKE_COUNT(request, fit.terms, 1, 32)},
     {"range", KEY_RANGE, "A:B", 0,
-     "fit from A to B nm; without it, 380:780, and all points of a file", 1},
-    {"over", KEY_OVER, "A:B", 0, "also state the errors from A to B nm", 1},
-    {"residuals", KEY_RESIDUALS, NULL, 0, "also the residual of every point", 2},
-    {"plot", KEY_PLOT, "FILE", ABBE_ARGUMENT_WRITES, "draw the fit and its residuals: .png or .svg",
-     2},
-    {"record", KEY_RECORD, "NAME", 0, "the fit as a record of this name, for a table", 2},
-    ABBE_MATERIALS_JSON_OPTION,
+     "fit from A to B nm; without it, 380:780, and all points of a file", 1, ABBE_TAKE_BY_KEY},
+    {"over", 0, "A:B", 0, "also state the errors from A to B nm", 1,
+     ABBE_TAKE_RANGE(request, over_from_nm, over_to_nm)},
+    {"residuals", 0, NULL, 0, "also the residual of every point", 2,
+     ABBE_TAKE_FLAG(request, residuals)},
+    {"plot", 0, "FILE", ABBE_ARGUMENT_WRITES, "draw the fit and its residuals: .png or .svg", 2,
+     ABBE_TAKE_TEXT(request, plot)},
+    {"record", 0, "NAME", 0, "the fit as a record of this name, for a table", 2,
+     ABBE_TAKE_TEXT(request, record)},
+    ABBE_MATERIALS_JSON_OPTION(request, json),
+    ABBE_ARGUMENT(request, name),
     {0}};
-
-static const abbe_take takes[] = {
-    ABBE_TAKE_TEXT(request, KEY_POINTS, points),
-    ABBE_TAKE_TEXT(request, KEY_FORMULA, formula),
-    ABBE_TAKE_COUNT(request, KEY_TERMS, fit.terms, 1, 32),
-    ABBE_TAKE_RANGE(request, KEY_OVER, over_from_nm, over_to_nm),
-    ABBE_TAKE_FLAG(request, KEY_RESIDUALS, residuals),
-    ABBE_TAKE_TEXT(request, KEY_PLOT, plot),
-    ABBE_TAKE_TEXT(request, KEY_RECORD, record),
-    ABBE_TAKE_TEXT(request, ABBE_MATERIALS_KEY_TABLE, table),
-    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
-    ABBE_TAKE_ARGUMENT(request, name),
-    {0},
-};
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
   static const char *const forms[] = {"cauchy", "sellmeier"};
   request *r = state->input;
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case KEY_FORM:
     r->fit.form = (abbe_fit_form)abbe_command_choice(r->program, "--form", arg, forms, 2);
@@ -349,9 +328,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   }
 }
 
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
+    .parse = parse,
     .args_doc = "[NAME]",
     .doc = "Fits a Cauchy or Sellmeier form to a material, a formula or measured points.\v"
            "Examples:\n"

@@ -6,7 +6,6 @@
 #include "spectral/materials/convert.h"
 #include "spectral/wavelengths.h"
 
-#include <argp.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -109,28 +108,31 @@ static abbe_result answer(const request *r, const abbe_material_table *known, ab
 
 enum {
   KEY_VALUE = ABBE_MATERIALS_KEY_OWN, /* and the VALUES - 1 after it */
-  KEY_FORM = KEY_VALUE + VALUES,
-  KEY_NAME,
-  KEY_SOURCE,
-  KEY_RANGE,
-  KEY_KNOWN
+  KEY_FORM = KEY_VALUE + VALUES
 };
 
-static const struct argp_option options[] = {
-    {"nd", KEY_VALUE + ND, "N", 0, "the index at 587.6 nm, with --vd or --bg", 0},
-    {"vd", KEY_VALUE + VD, "V", 0, "the Abbe number", 0},
-    {"bg", KEY_VALUE + BG, "D", 0, "the gem trade's dispersion, n(430.8 nm) - n(686.7 nm)", 0},
-    {"a", KEY_VALUE + A, "A", 0, "Cauchy's A, with --b", 0},
-    {"b", KEY_VALUE + B, "B", 0, "Cauchy's B in um^2", 0},
-    {"ior", KEY_VALUE + IOR, "N", 0, "glTF's ior, with --dispersion", 0},
-    {"dispersion", KEY_VALUE + DISPERSION, "D", 0, "glTF's dispersion, 20 / V_d", 0},
-    {"form", KEY_FORM, "FORM", 0, "cauchy (two terms) or sellmeier (one); without it, cauchy", 1},
-    {"name", KEY_NAME, "NAME", 0, "of the record; without it, my-material", 1},
-    {"source", KEY_SOURCE, "TEXT", 0, "where the numbers come from, for the record", 1},
-    {"range", KEY_RANGE, "A:B", 0, "of the record, nm; without it, 380:780", 1},
-    {"known", KEY_KNOWN, "FILE", ABBE_ARGUMENT_READS,
-     "a table of known materials, which say how far two numbers lead; without it, default", 1},
-    ABBE_MATERIALS_JSON_OPTION,
+static const abbe_option options[] = {
+    {"nd", KEY_VALUE + ND, "N", 0, "the index at 587.6 nm, with --vd or --bg", 0, ABBE_TAKE_BY_KEY},
+    {"vd", KEY_VALUE + VD, "V", 0, "the Abbe number", 0, ABBE_TAKE_BY_KEY},
+    {"bg", KEY_VALUE + BG, "D", 0, "the gem trade's dispersion, n(430.8 nm) - n(686.7 nm)", 0,
+     ABBE_TAKE_BY_KEY},
+    {"a", KEY_VALUE + A, "A", 0, "Cauchy's A, with --b", 0, ABBE_TAKE_BY_KEY},
+    {"b", KEY_VALUE + B, "B", 0, "Cauchy's B in um^2", 0, ABBE_TAKE_BY_KEY},
+    {"ior", KEY_VALUE + IOR, "N", 0, "glTF's ior, with --dispersion", 0, ABBE_TAKE_BY_KEY},
+    {"dispersion", KEY_VALUE + DISPERSION, "D", 0, "glTF's dispersion, 20 / V_d", 0,
+     ABBE_TAKE_BY_KEY},
+    {"form", KEY_FORM, "FORM", 0, "cauchy (two terms) or sellmeier (one); without it, cauchy", 1,
+     ABBE_TAKE_BY_KEY},
+    {"name", 0, "NAME", 0, "of the record; without it, my-material", 1,
+     ABBE_TAKE_TEXT(request, name)},
+    {"source", 0, "TEXT", 0, "where the numbers come from, for the record", 1,
+     ABBE_TAKE_TEXT(request, source)},
+    {"range", 0, "A:B", 0, "of the record, nm; without it, 380:780", 1,
+     ABBE_TAKE_RANGE(request, from_nm, to_nm)},
+    {"known", 0, "FILE", ABBE_ARGUMENT_READS,
+     "a table of known materials, which say how far two numbers lead; without it, default", 1,
+     ABBE_TAKE_TEXT(request, known)},
+    ABBE_MATERIALS_JSON_OPTION(request, json),
     {0}};
 
 /* 1.5168 leaves 5e-5 open. */
@@ -140,15 +142,6 @@ static double half_digit(const char *text) {
   const char *exponent = strpbrk(text, "eE");
   return 0.5 * pow(10, (exponent != NULL ? atof(exponent + 1) : 0) - (double)after);
 }
-
-static const abbe_take takes[] = {
-    ABBE_TAKE_TEXT(request, KEY_NAME, name),
-    ABBE_TAKE_TEXT(request, KEY_SOURCE, source),
-    ABBE_TAKE_RANGE(request, KEY_RANGE, from_nm, to_nm),
-    ABBE_TAKE_TEXT(request, KEY_KNOWN, known),
-    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
-    {0},
-};
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
   static const char *const names[VALUES] = {"--nd", "--vd",  "--bg",        "--a",
@@ -161,7 +154,6 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     r->half[i] = half_digit(arg);
     return 0;
   }
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case KEY_FORM:
     r->form = (abbe_fit_form)abbe_command_choice(r->program, "--form", arg, forms, 2);
@@ -174,9 +166,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   }
 }
 
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
+    .parse = parse,
     .doc = "Makes a record from the two numbers that you have, and says how far they lead.\v"
            "Examples:\n"
            "  abbe materials from --nd 1.5168 --vd 64.17 --name my-crown\n"

@@ -6,7 +6,6 @@
 #include "spectral/materials/material_table.h"
 #include "spectral/store/material_store.h"
 
-#include <argp.h>
 #include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,31 +17,29 @@ typedef struct request {
   bool json, all, force;
 } request;
 
-enum {
-  KEY_NAME = ABBE_MATERIALS_KEY_OWN,
-  KEY_SOURCE,
-  KEY_FORMAT,
-  KEY_PREFIX,
-  KEY_UNIT,
-  KEY_THIRD,
-  KEY_ALL,
-  KEY_FORCE
-};
+enum { KEY_FORMAT = ABBE_MATERIALS_KEY_OWN, KEY_UNIT, KEY_THIRD };
 
-static const struct argp_option options[] = {
+static const abbe_option options[] = {
     {"output", 'o', "TABLE", ABBE_ARGUMENT_WRITES,
-     "where to: YAML, or a store where it ends in .sqlite; without it, YAML to standard output", 0},
-    {"force", KEY_FORCE, NULL, 0, "write over a file that is there", 0},
+     "where to: YAML, or a store where it ends in .sqlite; without it, YAML to standard output", 0,
+     ABBE_TAKE_BY_KEY},
+    {"force", 0, NULL, 0, "write over a file that is there", 0, ABBE_TAKE_FLAG(request, force)},
     {"format", KEY_FORMAT, "FORMAT", 0,
-     "agf, rii, csv, yaml, sqlite or mtlx; without it, what the text says", 0},
-    {"name", KEY_NAME, "NAME", 0, "of the one material of a file (rii, csv); else the file's", 0},
-    {"prefix", KEY_PREFIX, "TEXT", 0, "before every name, such as schott-", 0},
-    {"source", KEY_SOURCE, "TEXT", 0, "where measured points come from (csv)", 0},
-    {"unit", KEY_UNIT, "UNIT", 0, "nm or um, of the wavelengths where no header says it (csv)", 0},
+     "agf, rii, csv, yaml, sqlite or mtlx; without it, what the text says", 0, ABBE_TAKE_BY_KEY},
+    {"name", 0, "NAME", 0, "of the one material of a file (rii, csv); else the file's", 0,
+     ABBE_TAKE_TEXT(request, batch.import.name)},
+    {"prefix", 0, "TEXT", 0, "before every name, such as schott-", 0,
+     ABBE_TAKE_TEXT(request, batch.prefix)},
+    {"source", 0, "TEXT", 0, "where measured points come from (csv)", 0,
+     ABBE_TAKE_TEXT(request, batch.import.source)},
+    {"unit", KEY_UNIT, "UNIT", 0, "nm or um, of the wavelengths where no header says it (csv)", 0,
+     ABBE_TAKE_BY_KEY},
     {"third", KEY_THIRD, "WHAT", 0,
-     "k, uncertainty or ignored: the third column where no header says it (csv); k", 0},
-    {"all", KEY_ALL, NULL, 0, "show every note, not the first of each kind", 0},
-    {"json", ABBE_MATERIALS_KEY_JSON, NULL, 0, "the notes as JSON, with -o", 0},
+     "k, uncertainty or ignored: the third column where no header says it (csv); k", 0,
+     ABBE_TAKE_BY_KEY},
+    {"all", 0, NULL, 0, "show every note, not the first of each kind", 0,
+     ABBE_TAKE_FLAG(request, all)},
+    {"json", 0, NULL, 0, "the notes as JSON, with -o", 0, ABBE_TAKE_FLAG(request, json)},
     {0}};
 
 static void read_csv_option(request *r, int key, const char *arg) {
@@ -56,20 +53,9 @@ static void read_csv_option(request *r, int key, const char *arg) {
         (abbe_csv_third)abbe_command_choice(r->program, "--third", arg, thirds, 3);
 }
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_TEXT(request, KEY_NAME, batch.import.name),
-    ABBE_TAKE_TEXT(request, KEY_PREFIX, batch.prefix),
-    ABBE_TAKE_TEXT(request, KEY_SOURCE, batch.import.source),
-    ABBE_TAKE_FLAG(request, KEY_ALL, all),
-    ABBE_TAKE_FLAG(request, KEY_FORCE, force),
-    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
-    {0},
-};
-
 static error_t parse(int key, char *arg, struct argp_state *state) {
   static const char *const formats[] = {"auto", "agf", "rii", "csv", "yaml", "sqlite", "mtlx"};
   request *r = state->input;
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case 'o':
     r->output = r->batch.target = arg;
@@ -91,9 +77,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   }
 }
 
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
+    .parse = parse,
     .args_doc = "FILE|FOLDER…",
     .doc = "Makes a material table of catalogues and data files: Zemax AGF, refractiveindex.info "
            "YAML, CSV of measured points, MaterialX, tables and stores of ours.\v"

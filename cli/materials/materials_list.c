@@ -3,7 +3,6 @@
 #include "spectral/formats/material_import.h"
 #include "spectral/materials/material_query.h"
 
-#include <argp.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -153,31 +152,27 @@ static abbe_result list_json(const abbe_material_table *table, const size_t *row
 
 /* ---- arguments ---- */
 
-enum {
-  KEY_NAME = ABBE_MATERIALS_KEY_OWN,
-  KEY_ND,
-  KEY_VD,
-  KEY_SOURCE,
-  KEY_SORT,
-  KEY_REVERSE,
-  KEY_COLUMNS
-};
+enum { KEY_SORT = ABBE_MATERIALS_KEY_OWN, KEY_COLUMNS };
 
-static const struct argp_option options[] = {
-    ABBE_MATERIALS_TABLE_OPTION,
-    {"name", KEY_NAME, "TEXT", ABBE_ARGUMENT_ONCE,
-     "only names with TEXT in them, or that match it where it has * ?", 1},
-    {"nd", KEY_ND, "A:B", ABBE_ARGUMENT_ONCE, "only n_d from A to B", 1},
-    {"vd", KEY_VD, "A:B", ABBE_ARGUMENT_ONCE, "only V_d from A to B", 1},
-    {"source", KEY_SOURCE, "TEXT", ABBE_ARGUMENT_ONCE, "only sources with TEXT in them", 1},
-    {"sort", KEY_SORT, "KEY", 0, "by name, n_d, v_d, b_g, p_gF, from, to (of the range), source",
-     2},
-    {"reverse", KEY_REVERSE, NULL, 0, "the last first", 2},
+static const abbe_option options[] = {
+    ABBE_MATERIALS_TABLE_OPTION(request, table),
+    {"name", 0, "TEXT", ABBE_ARGUMENT_ONCE,
+     "only names with TEXT in them, or that match it where it has * ?", 1,
+     ABBE_TAKE_TEXT(request, query.name)},
+    {"nd", 0, "A:B", ABBE_ARGUMENT_ONCE, "only n_d from A to B", 1,
+     ABBE_TAKE_RANGE(request, query.n_d_min, query.n_d_max)},
+    {"vd", 0, "A:B", ABBE_ARGUMENT_ONCE, "only V_d from A to B", 1,
+     ABBE_TAKE_RANGE(request, query.v_d_min, query.v_d_max)},
+    {"source", 0, "TEXT", ABBE_ARGUMENT_ONCE, "only sources with TEXT in them", 1,
+     ABBE_TAKE_TEXT(request, query.source)},
+    {"sort", KEY_SORT, "KEY", 0, "by name, n_d, v_d, b_g, p_gF, from, to (of the range), source", 2,
+     ABBE_TAKE_BY_KEY},
+    {"reverse", 0, NULL, 0, "the last first", 2, ABBE_TAKE_FLAG(request, query.descending)},
     {"columns", KEY_COLUMNS, "LIST", 0,
      "of name, n_d, v_d, b_g, n_F, n_C, n_e, p_gF, dp_gF, range, model, temperature, density, "
      "source, warning, description; without it, name,n_d,v_d,b_g,range,description",
-     2},
-    ABBE_MATERIALS_JSON_OPTION,
+     2, ABBE_TAKE_BY_KEY},
+    ABBE_MATERIALS_JSON_OPTION(request, json),
     {0}};
 
 static void take_columns(request *r, char *list) {
@@ -202,21 +197,9 @@ static abbe_material_key key_of(const char *program, const char *word) {
                                                 ABBE_MATERIAL_KEY_COUNT);
 }
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_TEXT(request, KEY_NAME, query.name),
-    ABBE_TAKE_RANGE(request, KEY_ND, query.n_d_min, query.n_d_max),
-    ABBE_TAKE_RANGE(request, KEY_VD, query.v_d_min, query.v_d_max),
-    ABBE_TAKE_TEXT(request, KEY_SOURCE, query.source),
-    ABBE_TAKE_FLAG(request, KEY_REVERSE, query.descending),
-    ABBE_TAKE_TEXT(request, ABBE_MATERIALS_KEY_TABLE, table),
-    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
-    {0},
-};
-
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
   abbe_material_query *q = &r->query;
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case KEY_SORT:
     q->sort = key_of(r->program, arg);
@@ -231,9 +214,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   }
 }
 
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
+    .parse = parse,
     .doc = "Lists the materials of a table, or those that are asked for.\v"
            "Examples:\n"
            "  abbe materials list\n"

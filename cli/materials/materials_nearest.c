@@ -4,7 +4,6 @@
 #include "spectral/materials/partners.h"
 #include "spectral/wavelengths.h"
 
-#include <argp.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -115,45 +114,25 @@ static abbe_result answer(const request *r, const abbe_material_table *table, ab
 
 /* ---- arguments ---- */
 
-enum {
-  KEY_ND = ABBE_MATERIALS_KEY_OWN,
-  KEY_VD,
-  KEY_LIKE,
-  KEY_LIKE_TABLE,
-  KEY_POINTS,
-  KEY_RANGE,
-  KEY_COUNT
-};
-
-static const struct argp_option options[] = {
-    {"nd", KEY_ND, "N", 0, "the index at 587.6 nm, with --vd", 0},
-    {"vd", KEY_VD, "V", 0, "the Abbe number, with --nd", 0},
-    {"like", KEY_LIKE, "NAME", ABBE_ARGUMENT_ONCE, "the whole curve of this material", 0},
-    {"like-table", KEY_LIKE_TABLE, "FILE", ABBE_ARGUMENT_READS,
-     "the table that NAME is in; without it, --table", 0},
-    {"points", KEY_POINTS, "FILE", ABBE_ARGUMENT_READS,
-     "measured points: columns of wavelength and n", 0},
-    {"range", KEY_RANGE, "A:B", 0, "with --like: compare from A to B nm; without it, 380:780", 0},
-    {"count", KEY_COUNT, "N", 0, "how many to show; without it, 5", 0},
-    ABBE_MATERIALS_TABLE_OPTION,
-    ABBE_MATERIALS_JSON_OPTION,
+static const abbe_option options[] = {
+    {"nd", 0, "N", 0, "the index at 587.6 nm, with --vd", 0,
+     ABBE_TAKE_NUMBER(request, n_d, 1.0001, 10)},
+    {"vd", 0, "V", 0, "the Abbe number, with --nd", 0, ABBE_TAKE_NUMBER(request, v_d, 0.1, 1e6)},
+    {"like", 0, "NAME", ABBE_ARGUMENT_ONCE, "the whole curve of this material", 0,
+     ABBE_TAKE_TEXT(request, like)},
+    {"like-table", 0, "FILE", ABBE_ARGUMENT_READS, "the table that NAME is in; without it, --table",
+     0, ABBE_TAKE_TEXT(request, like_table)},
+    {"points", 0, "FILE", ABBE_ARGUMENT_READS, "measured points: columns of wavelength and n", 0,
+     ABBE_TAKE_TEXT(request, points)},
+    {"range", 0, "A:B", 0, "with --like: compare from A to B nm; without it, 380:780", 0,
+     ABBE_TAKE_RANGE(request, from_nm, to_nm)},
+    {"count", 0, "N", 0, "how many to show; without it, 5", 0,
+     ABBE_TAKE_COUNT(request, count, 1, 10000)},
+    ABBE_MATERIALS_TABLE_OPTION(request, table),
+    ABBE_MATERIALS_JSON_OPTION(request, json),
     {0}};
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_NUMBER(request, KEY_ND, n_d, 1.0001, 10),
-    ABBE_TAKE_NUMBER(request, KEY_VD, v_d, 0.1, 1e6),
-    ABBE_TAKE_TEXT(request, KEY_LIKE, like),
-    ABBE_TAKE_TEXT(request, KEY_LIKE_TABLE, like_table),
-    ABBE_TAKE_TEXT(request, KEY_POINTS, points),
-    ABBE_TAKE_RANGE(request, KEY_RANGE, from_nm, to_nm),
-    ABBE_TAKE_COUNT(request, KEY_COUNT, count, 1, 10000),
-    ABBE_TAKE_TEXT(request, ABBE_MATERIALS_KEY_TABLE, table),
-    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
-    {0},
-};
-
 static error_t parse(int key, char *arg, struct argp_state *state) {
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case ARGP_KEY_ARG:
     argp_error(state, "'%s' is one argument too many; --like %s compares with that material", arg,
@@ -164,9 +143,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   }
 }
 
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
+    .parse = parse,
     .doc = "Finds the materials nearest to an n_d and V_d, to another material's curve, or to "
            "measured points.\v"
            "Examples:\n"

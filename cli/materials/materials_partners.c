@@ -4,7 +4,6 @@
 #include "spectral/formats/material_import.h"
 #include "spectral/materials/partners.h"
 
-#include <argp.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -122,38 +121,24 @@ static abbe_result answer(const request *r, const abbe_material_table *table, ab
 
 /* ---- arguments ---- */
 
-enum { KEY_WITH = ABBE_MATERIALS_KEY_OWN, KEY_MOST, KEY_COUNT };
-
-static const struct argp_option options[] = {
-    {"with", KEY_WITH, "THIRD", 0, "a second glass: F, C and g in one focus by three lenses", 0},
-    {"most-power", KEY_MOST, "SUM", 0,
-     "the largest sum of the powers' sizes, of 1 together; without it, 12", 0},
-    {"count", KEY_COUNT, "N", 0, "how many to show; without it, 10", 0},
+static const abbe_option options[] = {
+    {"with", 0, "THIRD", 0, "a second glass: F, C and g in one focus by three lenses", 0,
+     ABBE_TAKE_TEXT(request, third)},
+    {"most-power", 0, "SUM", 0,
+     "the largest sum of the powers' sizes, of 1 together; without it, 12", 0,
+     ABBE_TAKE_NUMBER(request, most_power, 1, 1e6)},
+    {"count", 0, "N", 0, "how many to show; without it, 10", 0,
+     ABBE_TAKE_COUNT(request, count, 1, 10000)},
     {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES,
-     "also the map of P_gF over V_d with all of them marked; .png or .svg", 0},
-    ABBE_MATERIALS_TABLE_OPTION,
-    ABBE_MATERIALS_JSON_OPTION,
+     "also the map of P_gF over V_d with all of them marked; .png or .svg", 0,
+     ABBE_TAKE_TEXT(request, map)},
+    ABBE_MATERIALS_TABLE_OPTION(request, table),
+    ABBE_MATERIALS_JSON_OPTION(request, json),
+    ABBE_ARGUMENT(request, name),
     {0}};
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_TEXT(request, KEY_WITH, third),
-    ABBE_TAKE_NUMBER(request, KEY_MOST, most_power, 1, 1e6),
-    ABBE_TAKE_COUNT(request, KEY_COUNT, count, 1, 10000),
-    ABBE_TAKE_TEXT(request, 'o', map),
-    ABBE_TAKE_TEXT(request, ABBE_MATERIALS_KEY_TABLE, table),
-    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
-    ABBE_TAKE_ARGUMENT(request, name),
-    {0},
-};
-
-static error_t parse(int key, char *arg, struct argp_state *state) {
-  if (abbe_take_option(takes, key, arg, state)) return 0;
-  return ARGP_ERR_UNKNOWN;
-}
-
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
     .args_doc = "GLASS",
     .doc =
         "Finds the glasses that make an achromat with a glass, by the secondary spectrum.\v"

@@ -4,7 +4,6 @@
 #include "colorimetry/plot/material_chart.h"
 #include "spectral/formats/material_import.h"
 
-#include <argp.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -91,7 +90,7 @@ abbe_result abbe_materials_fit_plot(const char *path, const char *of,
 }
 
 enum { MAX_TABLES = ABBE_MATERIAL_MAP_MAX_TABLES, MAX_NAMES = ABBE_MATERIAL_CHART_MAX };
-enum { KEY_MAP = ABBE_MATERIALS_KEY_OWN, KEY_RANGE, KEY_FITS, KEY_POINTS, KEY_SIZE };
+enum { KEY_TABLE = ABBE_MATERIALS_KEY_OWN, KEY_SIZE };
 
 typedef struct request {
   const char *program, *out, *points;
@@ -101,20 +100,24 @@ typedef struct request {
   bool map, fits;
 } request;
 
-static const struct argp_option options[] = {
-    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "the picture; .png or .svg", 0},
-    {"table", ABBE_MATERIALS_KEY_TABLE, "FILE", ABBE_ARGUMENT_READS | ABBE_ARGUMENT_REPEATS,
+static const abbe_option options[] = {
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "the picture; .png or .svg", 0,
+     ABBE_TAKE_TEXT(request, out)},
+    {"table", KEY_TABLE, "FILE", ABBE_ARGUMENT_READS | ABBE_ARGUMENT_REPEATS,
      "a table file, or default or thesis; without it, default. May be repeated: names are looked "
      "up in all, the map shows each in a colour of its own",
-     0},
-    {"map", KEY_MAP, NULL, 0, "n_d over V_d of all materials; NAMEs are marked", 0},
-    {"range", KEY_RANGE, "FROM:TO", 0, "wavelengths, nm; without it, 380:780", 0},
-    {"fits", KEY_FITS, NULL, 0, "the recorded fits too, and their residuals below", 0},
-    {"points", KEY_POINTS, "FILE.csv", ABBE_ARGUMENT_READS,
+     0, ABBE_TAKE_BY_KEY},
+    {"map", 0, NULL, 0, "n_d over V_d of all materials; NAMEs are marked", 0,
+     ABBE_TAKE_FLAG(request, map)},
+    {"range", 0, "FROM:TO", 0, "wavelengths, nm; without it, 380:780", 0,
+     ABBE_TAKE_RANGE(request, from, to)},
+    {"fits", 0, NULL, 0, "the recorded fits too, and their residuals below", 0,
+     ABBE_TAKE_FLAG(request, fits)},
+    {"points", 0, "FILE.csv", ABBE_ARGUMENT_READS,
      "measured points too (wavelength, n, uncertainty), and below them how far the first NAME is "
      "from them",
-     0},
-    {"size", KEY_SIZE, "WxH", 0, "of the picture; without it, 960x600", 0},
+     0, ABBE_TAKE_TEXT(request, points)},
+    {"size", KEY_SIZE, "WxH", 0, "of the picture; without it, 960x600", 0, ABBE_TAKE_BY_KEY},
     {0}};
 
 static void read_size(request *r, const char *text) {
@@ -128,20 +131,10 @@ static void read_size(request *r, const char *text) {
   abbe_materials_wrong_use(r->program, sentence);
 }
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_TEXT(request, 'o', out),
-    ABBE_TAKE_FLAG(request, KEY_MAP, map),
-    ABBE_TAKE_RANGE(request, KEY_RANGE, from, to),
-    ABBE_TAKE_FLAG(request, KEY_FITS, fits),
-    ABBE_TAKE_TEXT(request, KEY_POINTS, points),
-    {0},
-};
-
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
-  case ABBE_MATERIALS_KEY_TABLE:
+  case KEY_TABLE:
     if (r->table_count == MAX_TABLES) argp_error(state, "more than %d tables", MAX_TABLES);
     r->table[r->table_count++] = arg;
     return 0;
@@ -157,9 +150,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   }
 }
 
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
+    .parse = parse,
     .args_doc = "NAME… -o FILE\n--map [NAME…] -o FILE",
     .doc = "Draws the index of materials over wavelength, or the map of glasses.\v"
            "Examples:\n"

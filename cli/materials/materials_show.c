@@ -10,7 +10,6 @@
 #include "spectral/optics.h"
 #include "spectral/wavelengths.h"
 
-#include <argp.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -362,34 +361,25 @@ static abbe_result show_json(const request *r, const abbe_material_table *table,
 
 /* ---- arguments ---- */
 
-enum { KEY_AT = ABBE_MATERIALS_KEY_OWN, KEY_TEMPERATURE, KEY_PRESSURE, KEY_FIT };
+enum { KEY_AT = ABBE_MATERIALS_KEY_OWN };
 
-static const struct argp_option options[] = {
-    {"at", KEY_AT, "NM", 0, "also the index at this wavelength; may be repeated", 0},
-    {"temperature", KEY_TEMPERATURE, "C", 0,
-     "the indices at this temperature of material and air, Celsius", 0},
-    {"pressure", KEY_PRESSURE, "ATM", 0,
-     "and relative to air of this pressure; 0: relative to vacuum", 0},
-    ABBE_MATERIALS_TABLE_OPTION,
-    ABBE_MATERIALS_JSON_OPTION,
-    {"fit", KEY_FIT, NULL, 0,
-     "the two Cauchy fits over 380:780 nm made anew, as YAML for the record", 0},
+static const abbe_option options[] = {
+    {"at", KEY_AT, "NM", 0, "also the index at this wavelength; may be repeated", 0,
+     ABBE_TAKE_BY_KEY},
+    {"temperature", 0, "C", 0, "the indices at this temperature of material and air, Celsius", 0,
+     ABBE_TAKE_NUMBER(request, conditions.temperature_c, ABBE_CONDITIONS_LEAST_C,
+                      ABBE_CONDITIONS_MOST_C)},
+    {"pressure", 0, "ATM", 0, "and relative to air of this pressure; 0: relative to vacuum", 0,
+     ABBE_TAKE_NUMBER(request, conditions.pressure_atm, 0, ABBE_CONDITIONS_MOST_ATM)},
+    ABBE_MATERIALS_TABLE_OPTION(request, table),
+    ABBE_MATERIALS_JSON_OPTION(request, json),
+    {"fit", 0, NULL, 0, "the two Cauchy fits over 380:780 nm made anew, as YAML for the record", 0,
+     ABBE_TAKE_FLAG(request, fit)},
+    ABBE_ARGUMENT(request, name),
     {0}};
-
-static const abbe_take takes[] = {
-    ABBE_TAKE_NUMBER(request, KEY_TEMPERATURE, conditions.temperature_c, ABBE_CONDITIONS_LEAST_C,
-                     ABBE_CONDITIONS_MOST_C),
-    ABBE_TAKE_NUMBER(request, KEY_PRESSURE, conditions.pressure_atm, 0, ABBE_CONDITIONS_MOST_ATM),
-    ABBE_TAKE_TEXT(request, ABBE_MATERIALS_KEY_TABLE, table),
-    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
-    ABBE_TAKE_FLAG(request, KEY_FIT, fit),
-    ABBE_TAKE_ARGUMENT(request, name),
-    {0},
-};
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
-  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case KEY_AT:
     if (r->at_count == MAX_AT) argp_error(state, "more than %d --at", MAX_AT);
@@ -400,9 +390,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   }
 }
 
-static const struct argp parser = {
+static const abbe_parser parser = {
     .options = options,
-    .parser = parse,
+    .parse = parse,
     .args_doc = "NAME",
     .doc = "Shows one material of a table.\v"
            "Examples:\n"

@@ -7,14 +7,13 @@
 #include "spectral/materials/absorption.h"
 #include "spectral/materials/material_query.h"
 
-#include <argp.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-void abbe_materials_parse(const struct argp *parser, int argc, char **argv, void *request) {
+void abbe_materials_parse(const abbe_parser *parser, int argc, char **argv, void *request) {
   abbe_arguments_parse(parser, 0, argc, argv, request);
 }
 

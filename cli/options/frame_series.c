@@ -184,7 +184,7 @@ void abbe_frame_series_take_move(abbe_frame_series *s, abbe_scene_input_changes 
   char *first = s->move_first[s->moves];
   snprintf(first, ABBE_FRAME_SERIES_MOVE_TEXT, "%.*s", (int)(colon - text), text);
   s->move_last[s->moves++] = colon + 1;
-  abbe_scene_input_take(changes, ABBE_SCENE_INPUT_SET, first, s->program);
+  abbe_scene_input_set(changes, first, s->program);
 }
 
 void abbe_frame_series_check(const abbe_frame_series *s, const char *png,

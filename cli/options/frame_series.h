@@ -41,7 +41,7 @@ void abbe_frame_series_take(abbe_frame_series *series, const char *text);
         "a number or numbers of the scene go from A at the first of --frames A:B to B at the "     \
         "last, "                                                                                   \
         "such as lights.sun.direction=[0,0,-1]:[1,0,-1]; may be repeated",                         \
-        group                                                                                      \
+        group, ABBE_TAKE_BY_KEY                                                                    \
   }
 /* "KEY=A:B"; the scene begins with KEY=A. Ends the program where it is none, or one too many. */
 void abbe_frame_series_take_move(abbe_frame_series *series, abbe_scene_input_changes *changes,

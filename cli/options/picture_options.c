@@ -12,13 +12,14 @@
 
 enum { OPTION_OBSERVER = 0x900, OPTION_LIT_BY, OPTION_ILLUMINANT };
 
-static const struct argp_option options[] = {
+static const abbe_option options[] = {
     {"observer", OPTION_OBSERVER, "NAME", 0,
-     "of the spectrum's colour: 1931, 1964, 2015-2 or 2015-10; without it, 1931", 0},
+     "of the spectrum's colour: 1931, 1964, 2015-2 or 2015-10; without it, 1931", 0,
+     ABBE_TAKE_BY_KEY},
     {"lit-by", OPTION_LIT_BY, "NAME|FILE", ABBE_ARGUMENT_READS,
-     "the illuminant that all lights of the scene have", 0},
+     "the illuminant that all lights of the scene have", 0, ABBE_TAKE_BY_KEY},
     {"illuminant", OPTION_ILLUMINANT, "NAME|FILE", ABBE_ARGUMENT_READS,
-     "another to see the spectrum under (a reflectance: D65 without it)", 0},
+     "another to see the spectrum under (a reflectance: D65 without it)", 0, ABBE_TAKE_BY_KEY},
     {0}};
 
 abbe_observer abbe_spectral_options_observer(const char *program, const char *text) {
@@ -49,7 +50,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   return 0;
 }
 
-const struct argp abbe_spectral_options_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
+const abbe_parser abbe_spectral_options_argp = {.options = options, .parse = parse};
 
 static abbe_result make_light(const char *name, abbe_illuminant *light,
                               const abbe_illuminant **used, abbe_error *error) {
@@ -96,30 +97,33 @@ enum {
 /* Share of a picture; a white table in the light is no fault. */
 #define MOST_WHITE 0.2
 
-static const struct argp_option screen_options_options[] = {
+static const abbe_option screen_options_options[] = {
     {"ocio", OPTION_OCIO, "FILE", ABBE_ARGUMENT_READS,
-     "the configuration; without it, $OCIO, else the shipped one", 0},
+     "the configuration; without it, $OCIO, else the shipped one", 0, ABBE_TAKE_BY_KEY},
     {"display", OPTION_DISPLAY, "NAME", 0,
-     "the screen, or its ICC profile (.icc or .icm); without it, the configuration's first", 0},
-    {"view", OPTION_VIEW, "NAME", 0, "how to show it; without it, the display's first", 0},
+     "the screen, or its ICC profile (.icc or .icm); without it, the configuration's first", 0,
+     ABBE_TAKE_BY_KEY},
+    {"view", OPTION_VIEW, "NAME", 0, "how to show it; without it, the display's first", 0,
+     ABBE_TAKE_BY_KEY},
     {"exposure", OPTION_EXPOSURE, "STOPS|auto", 0,
      "brighten (or darken) before the view; auto: so that a tenth of the picture is brighter than "
      "0.8; without it, as the scene's camera says, else 0",
-     0},
+     0, ABBE_TAKE_BY_KEY},
     {"gamut", OPTION_GAMUT, "HOW", 0,
      "bring colours that the screen lacks inside, before the view: clip, white (towards it at "
      "constant Oklab hue) or compress (as ACES 1.3); without it, as the view does",
-     0},
+     0, ABBE_TAKE_BY_KEY},
     {"white", OPTION_WHITE, "X,Y|KELVIN", 0,
      "what shall look white, by Bradford: a chromaticity or a temperature (daylight's from 4000 K "
      "on)",
-     0},
+     0, ABBE_TAKE_BY_KEY},
     {"glare", OPTION_GLARE, "DEGREES", 0,
      "what the eye scatters of bright light, of a picture that is seen so many degrees high, such "
      "as 20",
-     0},
+     0, ABBE_TAKE_BY_KEY},
     {"bits", OPTION_BITS, "N", 0,
-     "of a PNG 8 or 16 (8, for PQ and HLG 16), of an AVIF 10 or 12 (10), of others 8", 0},
+     "of a PNG 8 or 16 (8, for PQ and HLG 16), of an AVIF 10 or 12 (10), of others 8", 0,
+     ABBE_TAKE_BY_KEY},
     {0}};
 
 static void take_gamut(abbe_screen_options *o, const char *text) {
@@ -187,8 +191,8 @@ static error_t screen_options_parse(int key, char *text, struct argp_state *stat
   }
 }
 
-const struct argp abbe_screen_options_argp = {
-    screen_options_options, screen_options_parse, NULL, NULL, NULL, NULL, NULL};
+const abbe_parser abbe_screen_options_argp = {.options = screen_options_options,
+                                              .parse = screen_options_parse};
 
 void abbe_screen_options_end(const abbe_screen_options *o, const char *png,
                              struct argp_state *state) {
@@ -248,30 +252,18 @@ abbe_result abbe_screen_options_write(const abbe_screen_options *o, const char *
   return result;
 }
 
-enum { OPTION_SAVE_MAP = 0x300, OPTION_MAP_LIGHT, OPTION_MAP_LIKE };
-
-static const struct argp_option map_options_options[] = {
-    {"save-map", OPTION_SAVE_MAP, "FILE.exr", ABBE_ARGUMENT_WRITES,
-     "where one light's flux lands, texel by texel", 3},
-    {"map-light", OPTION_MAP_LIGHT, "NAME|NUMBER", 0, "whose map that is (the first light's)", 3},
-    {"map-like", OPTION_MAP_LIKE, "FILE.exr", ABBE_ARGUMENT_READS,
-     "texels that lie exactly as in that map, and as many", 3},
+static const abbe_option map_options_options[] = {
+    {"save-map", 0, "FILE.exr", ABBE_ARGUMENT_WRITES,
+     "where one light's flux lands, texel by texel", 3,
+     ABBE_TAKE_TARGET(abbe_map_options, save, ".exr")},
+    {"map-light", 0, "NAME|NUMBER", 0, "whose map that is (the first light's)", 3,
+     ABBE_TAKE_TEXT(abbe_map_options, light)},
+    {"map-like", 0, "FILE.exr", ABBE_ARGUMENT_READS,
+     "texels that lie exactly as in that map, and as many", 3,
+     ABBE_TAKE_TEXT(abbe_map_options, like)},
     {0}};
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_TARGET(abbe_map_options, OPTION_SAVE_MAP, save, ".exr"),
-    ABBE_TAKE_TEXT(abbe_map_options, OPTION_MAP_LIGHT, light),
-    ABBE_TAKE_TEXT(abbe_map_options, OPTION_MAP_LIKE, like),
-    {0},
-};
-
-static error_t map_options_parse(int key, char *text, struct argp_state *state) {
-  if (abbe_take_option(takes, key, text, state)) return 0;
-  return ARGP_ERR_UNKNOWN;
-}
-
-const struct argp abbe_map_options_argp = {
-    map_options_options, map_options_parse, NULL, NULL, NULL, NULL, NULL};
+const abbe_parser abbe_map_options_argp = {.options = map_options_options, .parse = NULL};
 
 /* The one light of that name: unlike what people type, what a file names is never a number. */
 static abbe_result find_named(const abbe_map_options *o, const abbe_scene *scene, const char *name,
@@ -310,29 +302,4 @@ abbe_result abbe_map_options_resolve(abbe_map_options *o, const abbe_scene *scen
   if (o->light != NULL) ABBE_TRY(abbe_scene_find_light(scene, o->light, &o->light_index, error));
   if (o->like != NULL) ABBE_TRY(read_like(o, scene, sized, error));
   return ABBE_OK;
-}
-
-enum { MOST_THREADS = 256 };
-
-error_t abbe_work_options_take(abbe_work_options *o, int key, const char *text,
-                               const char *program) {
-  switch (key) {
-  case ABBE_WORK_RANGE:
-    abbe_command_range(program, "--range", text, &o->min_nm, &o->max_nm);
-    return 0;
-  case ABBE_WORK_SEED:
-    o->seed = (uint32_t)abbe_command_count(program, "--seed", text, 0, UINT32_MAX);
-    return 0;
-  case ABBE_WORK_THREADS:
-    o->threads = abbe_command_count(program, "--threads", text, 1, MOST_THREADS);
-    return 0;
-  case ABBE_WORK_RESUME:
-    o->resume = true;
-    return 0;
-  case ABBE_WORK_EVERY:
-    o->every_s = abbe_command_number(program, "--checkpoint-every", text, 0, 1e9);
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
 }

@@ -4,6 +4,7 @@
 #ifndef ABBE_CLI_OPTIONS_PICTURE_OPTIONS_H
 #define ABBE_CLI_OPTIONS_PICTURE_OPTIONS_H
 
+#include "cli/base/arguments.h"
 #include "colorimetry/image/display_ocio.h"
 #include "colorimetry/rgb_space.h"
 #include "colorimetry/screen/screen_png.h"
@@ -11,7 +12,6 @@
 #include "scenes/scene.h"
 #include "scenes/view/map_layout.h"
 
-#include <argp.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -26,7 +26,7 @@ typedef struct abbe_spectral_options {
 } abbe_spectral_options;
 
 /* A child parser whose input is the options. */
-extern const struct argp abbe_spectral_options_argp;
+extern const abbe_parser abbe_spectral_options_argp;
 
 /* Help of the option --observer of what makes pictures. */
 #define ABBE_OBSERVER_HELP                                                                         \
@@ -46,35 +46,49 @@ void abbe_spectral_options_note_unread(const abbe_image *image, const char *laye
 /* What commands that follow many rays are asked alike: which wavelengths, random numbers and
  * threads, and that they go on from a checkpoint. */
 
+enum { ABBE_WORK_MOST_THREADS = 256 };
 /* Zeroed but for every_s. */
 typedef struct abbe_work_options {
   double min_nm, max_nm; /* 0: not given */
-  uint32_t seed;
-  size_t threads; /* 0: all cores */
+  size_t seed, threads;  /* threads 0: all cores */
   bool resume;
   double every_s; /* between two checkpoints */
 } abbe_work_options;
 
-/* Rows of a command's options, and in *options what they say. */
-enum {
-  ABBE_WORK_RANGE = 0x7e00,
-  ABBE_WORK_SEED,
-  ABBE_WORK_THREADS,
-  ABBE_WORK_RESUME,
-  ABBE_WORK_EVERY
-};
-#define ABBE_WORK_OPTIONS(group, keeping)                                                          \
-  {"range", ABBE_WORK_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", group},                  \
-      {"seed", ABBE_WORK_SEED, "N", 0, "of the random numbers (0)", group},                        \
-      {"threads", ABBE_WORK_THREADS, "N", 0, "all cores without; the result is the same", group},  \
-      {"resume", ABBE_WORK_RESUME, NULL, 0, "go on from the checkpoint, where there is one",       \
-       keeping},                                                                                   \
+/* Rows of a command's options. */
+#define ABBE_WORK_OPTIONS(request, field, group, keeping)                                          \
+  {"range",                                                                                        \
+   0,                                                                                              \
+   "FROM:TO",                                                                                      \
+   0,                                                                                              \
+   "wavelengths in nm (380:780)",                                                                  \
+   group,                                                                                          \
+   ABBE_TAKE_RANGE(request, field.min_nm, field.max_nm)},                                          \
+      {"seed",                                                                                     \
+       0,                                                                                          \
+       "N",                                                                                        \
+       0,                                                                                          \
+       "of the random numbers (0)",                                                                \
+       group,                                                                                      \
+       ABBE_TAKE_COUNT(request, field.seed, 0, UINT32_MAX)},                                       \
+      {"threads",                                                                                  \
+       0,                                                                                          \
+       "N",                                                                                        \
+       0,                                                                                          \
+       "all cores without; the result is the same",                                                \
+       group,                                                                                      \
+       ABBE_TAKE_COUNT(request, field.threads, 1, ABBE_WORK_MOST_THREADS)},                        \
+      {"resume",                                                                                   \
+       0,                                                                                          \
+       NULL,                                                                                       \
+       0,                                                                                          \
+       "go on from the checkpoint, where there is one",                                            \
+       keeping,                                                                                    \
+       ABBE_TAKE_FLAG(request, field.resume)},                                                     \
   {                                                                                                \
-    "checkpoint-every", ABBE_WORK_EVERY, "SECONDS", 0, "how often it is written (30)", keeping     \
+    "checkpoint-every", 0, "SECONDS", 0, "how often it is written (30)", keeping,                  \
+        ABBE_TAKE_NUMBER(request, field.every_s, 0, 1e9)                                           \
   }
-/* ARGP_ERR_UNKNOWN where key is none of them; ends the program where the text is no such number. */
-error_t abbe_work_options_take(abbe_work_options *options, int key, const char *text,
-                               const char *program);
 
 /* How a picture is shown, for every command that writes one for a display:
  * --ocio, --display, --view, --exposure, --gamut, --white, --glare and --bits. */
@@ -91,7 +105,7 @@ typedef struct abbe_screen_options {
 } abbe_screen_options;
 
 /* An argp child; its input is an abbe_screen_options. */
-extern const struct argp abbe_screen_options_argp;
+extern const abbe_parser abbe_screen_options_argp;
 
 /* At the end of the arguments: what is given needs a picture, and its bits are such as that has.
  * Ends the program with ABBE_EXIT_USAGE. */
@@ -123,7 +137,7 @@ typedef struct abbe_map_options {
 } abbe_map_options;
 
 /* An argp child: --save-map, --map-light, --map-like. Its input is an abbe_map_options. */
-extern const struct argp abbe_map_options_argp;
+extern const abbe_parser abbe_map_options_argp;
 
 /* Reads like and finds the light: --map-light's, else the one that like names, else the first.
  * With `sized` like's map must be square, for its side is taken. */

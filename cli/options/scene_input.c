@@ -56,8 +56,33 @@ static const char *find_from_here(const char *set) {
   return kept[count++] = text;
 }
 
-static void take_studio(abbe_scene_input_changes *changes, int key, const char *text,
-                        const char *program) {
+enum { LOOK = 1, WITH, SETTING, METAL, WIDTH, TILT = 1, AT, SET };
+
+static const abbe_option studio_options[] = {
+    {"look", LOOK, "NAME", 0,
+     "of a stone's file: white, for a catalogue; black, for pale stones; velvet, for a window; "
+     "daylight, for its colour; darkfield, for what is inside; lightbox, for its pattern; "
+     "dispersion and fire, for its sparks; backdrop, for a poster (white)",
+     1, ABBE_TAKE_BY_KEY},
+    {"with", WITH, "WHAT", 0, "what a stone's file is shown with: table, ring, none (table)", 1,
+     ABBE_TAKE_BY_KEY},
+    {"setting", SETTING, "KIND", 0,
+     "metal around each stone of a file: prongs, bezel, channel, band, pave (none)", 1,
+     ABBE_TAKE_BY_KEY},
+    {"metal", METAL, "NAME", 0,
+     "of a ring or a setting: gold, silver, platinum, rhodium, palladium, gold-18k, "
+     "rose-gold-18k … (gold)",
+     1, ABBE_TAKE_BY_KEY},
+    {"width", WIDTH, "LENGTH", 0,
+     "of a stone's file, its smaller extent, such as 6.5mm or 0.2in; a bare number is of mm "
+     "(as its file has it, else 6.5mm)",
+     1, ABBE_TAKE_BY_KEY},
+    {"save-scene", 0, "FILE.yaml", ABBE_ARGUMENT_WRITES,
+     "write the scene that is made of a stone's file, to be edited", 1,
+     ABBE_TAKE_TARGET(abbe_scene_input_changes, save, ".yaml")},
+    {0}};
+
+static error_t take_studio(int key, char *text, struct argp_state *state) {
 #define LOOK_NAME(name) #name,
 #define WITH_NAME(code, name) #name,
   static const char *const looks[] = {ABBE_STUDIO_LOOKS(LOOK_NAME)};
@@ -65,30 +90,28 @@ static void take_studio(abbe_scene_input_changes *changes, int key, const char *
   static const char *const settings[] = {ABBE_SETTING_KINDS(WITH_NAME)};
 #undef LOOK_NAME
 #undef WITH_NAME
+  static const char *const names[] = {"", "--look", "--with", "--setting", "--metal", "--width"};
+  abbe_scene_input_changes *changes = state->input;
   abbe_studio *studio = &changes->studio;
-  if (key == ABBE_SCENE_INPUT_SAVE) {
-    changes->save = abbe_command_target(program, "--save-scene", text, ".yaml");
-    return;
-  }
-  changes->look = key == ABBE_SCENE_INPUT_LOOK      ? "--look"
-                  : key == ABBE_SCENE_INPUT_WITH    ? "--with"
-                  : key == ABBE_SCENE_INPUT_SETTING ? "--setting"
-                  : key == ABBE_SCENE_INPUT_METAL   ? "--metal"
-                                                    : "--width";
-  if (key == ABBE_SCENE_INPUT_LOOK)
-    studio->look = (abbe_studio_look)abbe_command_choice(program, "--look", text, looks,
+  if (key < LOOK || key > WIDTH) return ARGP_ERR_UNKNOWN;
+  changes->look = names[key];
+  if (key == LOOK)
+    studio->look = (abbe_studio_look)abbe_command_choice(state->name, "--look", text, looks,
                                                          ABBE_STUDIO_LOOK_COUNT);
-  else if (key == ABBE_SCENE_INPUT_WITH)
-    studio->with = (abbe_studio_with)abbe_command_choice(program, "--with", text, withs,
+  else if (key == WITH)
+    studio->with = (abbe_studio_with)abbe_command_choice(state->name, "--with", text, withs,
                                                          ABBE_STUDIO_WITH_COUNT);
-  else if (key == ABBE_SCENE_INPUT_SETTING)
+  else if (key == SETTING)
     studio->setting =
-        1 + abbe_command_choice(program, "--setting", text, settings, ABBE_SETTING_COUNT);
-  else if (key == ABBE_SCENE_INPUT_METAL)
+        1 + abbe_command_choice(state->name, "--setting", text, settings, ABBE_SETTING_COUNT);
+  else if (key == METAL)
     studio->metal = text;
   else
-    studio->width_m = abbe_command_length(program, "--width", text, 1e-6, 1e3);
+    studio->width_m = abbe_command_length(state->name, "--width", text, 1e-6, 1e3);
+  return 0;
 }
+
+const abbe_parser abbe_studio_options = {.options = studio_options, .parse = take_studio};
 
 /* Files that people try, and what to do with them. */
 static void refuse_foreign(const char *path, struct argp_state *state) {
@@ -130,30 +153,49 @@ const char *abbe_scene_input_picture(const char *program, const char *scene) {
   return path;
 }
 
-error_t abbe_scene_input_take(abbe_scene_input_changes *changes, int key, const char *text,
-                              const char *program) {
-  if (key == ABBE_SCENE_INPUT_MATERIAL)
-    changes->stone = text;
-  else if (key == ABBE_SCENE_INPUT_TILT)
-    take_tilt(changes, text, program);
-  else if (key == ABBE_SCENE_INPUT_AT) {
-    changes->timed = true;
-    changes->time = abbe_command_number(program, "--at", text, -1e6, 1e6);
-  } else if (key >= ABBE_SCENE_INPUT_LOOK && key <= ABBE_SCENE_INPUT_SAVE)
-    take_studio(changes, key, text, program);
-  else if (key == ABBE_SCENE_INPUT_ALPHA)
-    changes->alpha = true;
-  else if (key != ABBE_SCENE_INPUT_SET)
-    return ARGP_ERR_UNKNOWN;
-  else if (changes->set_count < ABBE_SCENE_INPUT_MOST)
+void abbe_scene_input_set(abbe_scene_input_changes *changes, const char *text,
+                          const char *program) {
+  if (changes->set_count < ABBE_SCENE_INPUT_MOST) {
     changes->set[changes->set_count++] = find_from_here(text);
-  else {
-    fprintf(stderr, "%s: no more than %d --set; write the values into the scene\n", program,
-            ABBE_SCENE_INPUT_MOST);
-    exit(ABBE_EXIT_USAGE);
+    return;
   }
+  fprintf(stderr, "%s: no more than %d --set; write the values into the scene\n", program,
+          ABBE_SCENE_INPUT_MOST);
+  exit(ABBE_EXIT_USAGE);
+}
+
+static const abbe_option scene_options[] = {
+    {"material", 0, "[NAME=]STONE", 0,
+     "make the refractors of STONE; where they are of several materials, those of the material or "
+     "object NAME",
+     1, ABBE_TAKE_TEXT(abbe_scene_input_changes, stone)},
+    {"set", SET, "KEY=VALUE", 0,
+     "another value in the scene, such as camera.fov=30 or lights.lamp.intensity=2; may be "
+     "repeated",
+     1, ABBE_TAKE_BY_KEY},
+    {"tilt", TILT, "DEG[,AXIS]", 0,
+     "tilt the refractors about their middle, about the horizontal axis of azimuth AXIS (0: +x)", 1,
+     ABBE_TAKE_BY_KEY},
+    {"at", AT, "SECONDS", 0,
+     "the scene at that time, of its waves and keyframes (its own 'time', else 0)", 1,
+     ABBE_TAKE_BY_KEY},
+    {0}};
+
+static error_t take_change(int key, char *text, struct argp_state *state) {
+  abbe_scene_input_changes *changes = state->input;
+  if (key == TILT)
+    take_tilt(changes, text, state->name);
+  else if (key == SET)
+    abbe_scene_input_set(changes, text, state->name);
+  else if (key == AT) {
+    changes->timed = true;
+    changes->time = abbe_command_number(state->name, "--at", text, -1e6, 1e6);
+  } else
+    return ARGP_ERR_UNKNOWN;
   return 0;
 }
+
+const abbe_parser abbe_scene_input_options = {.options = scene_options, .parse = take_change};
 
 /* Options of a studio are for stones' files. */
 static void check_studio(const char *program, const char *path,

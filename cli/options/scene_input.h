@@ -9,8 +9,6 @@
 #include "scenes/scene.h"
 #include "scenes/studio/studio.h"
 
-#include <argp.h>
-
 struct cJSON;
 
 enum { ABBE_SCENE_INPUT_MOST = 64 };
@@ -30,96 +28,14 @@ typedef struct abbe_scene_input_changes {
   double time;
 } abbe_scene_input_changes;
 
-/* Rows of a command's options, and in *changes what they say. */
-enum {
-  ABBE_SCENE_INPUT_MATERIAL = 0x7f00,
-  ABBE_SCENE_INPUT_SET,
-  ABBE_SCENE_INPUT_TILT,
-  ABBE_SCENE_INPUT_AT,
-  ABBE_SCENE_INPUT_LOOK,
-  ABBE_SCENE_INPUT_WITH,
-  ABBE_SCENE_INPUT_SETTING,
-  ABBE_SCENE_INPUT_METAL,
-  ABBE_SCENE_INPUT_WIDTH,
-  ABBE_SCENE_INPUT_SAVE,
-  ABBE_SCENE_INPUT_ALPHA
-};
-#define ABBE_SCENE_INPUT_ALPHA_OPTION(group)                                                       \
-  {                                                                                                \
-    "alpha", ABBE_SCENE_INPUT_ALPHA, NULL, 0,                                                      \
-        "nothing behind the objects, and how much of each pixel they cover as alpha: "             \
-        "premultiplied in the EXR (channel A), straight in a PNG or WebP",                         \
-        group                                                                                      \
-  }
-#define ABBE_SCENE_INPUT_STUDIO_OPTIONS(group)                                                     \
-  {"look",                                                                                         \
-   ABBE_SCENE_INPUT_LOOK,                                                                          \
-   "NAME",                                                                                         \
-   0,                                                                                              \
-   "of a stone's file: white, for a catalogue; black, for pale stones; velvet, for a window; "     \
-   "daylight, for its colour; darkfield, for what is inside; lightbox, for its pattern; "          \
-   "dispersion and fire, for its sparks; backdrop, for a poster (white)",                          \
-   group},                                                                                         \
-      {"with",                                                                                     \
-       ABBE_SCENE_INPUT_WITH,                                                                      \
-       "WHAT",                                                                                     \
-       0,                                                                                          \
-       "what a stone's file is shown with: table, ring, none (table)",                             \
-       group},                                                                                     \
-      {"setting",                                                                                  \
-       ABBE_SCENE_INPUT_SETTING,                                                                   \
-       "KIND",                                                                                     \
-       0,                                                                                          \
-       "metal around each stone of a file: prongs, bezel, channel, band, pave (none)",             \
-       group},                                                                                     \
-      {"metal",                                                                                    \
-       ABBE_SCENE_INPUT_METAL,                                                                     \
-       "NAME",                                                                                     \
-       0,                                                                                          \
-       "of a ring or a setting: gold, silver, platinum, rhodium, palladium, gold-18k, "            \
-       "rose-gold-18k … (gold)",                                                                   \
-       group},                                                                                     \
-      {"width",                                                                                    \
-       ABBE_SCENE_INPUT_WIDTH,                                                                     \
-       "LENGTH",                                                                                   \
-       0,                                                                                          \
-       "of a stone's file, its smaller extent, such as 6.5mm or 0.2in; a bare number is of mm "    \
-       "(as its file has it, else 6.5mm)",                                                         \
-       group},                                                                                     \
-  {                                                                                                \
-    "save-scene", ABBE_SCENE_INPUT_SAVE, "FILE.yaml", ABBE_ARGUMENT_WRITES,                        \
-        "write the scene that is made of a stone's file, to be edited", group                      \
-  }
-#define ABBE_SCENE_INPUT_OPTIONS(group)                                                            \
-  {"material",                                                                                     \
-   ABBE_SCENE_INPUT_MATERIAL,                                                                      \
-   "[NAME=]STONE",                                                                                 \
-   0,                                                                                              \
-   "make the refractors of STONE; where they are of several materials, those of the material or "  \
-   "object NAME",                                                                                  \
-   group},                                                                                         \
-      {"set",                                                                                      \
-       ABBE_SCENE_INPUT_SET,                                                                       \
-       "KEY=VALUE",                                                                                \
-       0,                                                                                          \
-       "another value in the scene, such as camera.fov=30 or lights.lamp.intensity=2; may be "     \
-       "repeated",                                                                                 \
-       group},                                                                                     \
-      {"tilt",                                                                                     \
-       ABBE_SCENE_INPUT_TILT,                                                                      \
-       "DEG[,AXIS]",                                                                               \
-       0,                                                                                          \
-       "tilt the refractors about their middle, about the horizontal axis of azimuth AXIS (0: "    \
-       "+x)",                                                                                      \
-       group},                                                                                     \
-  {                                                                                                \
-    "at", ABBE_SCENE_INPUT_AT, "SECONDS", 0,                                                       \
-        "the scene at that time, of its waves and keyframes (its own 'time', else 0)", group       \
-  }
-/* ARGP_ERR_UNKNOWN where key is none of them; ends the program where there are too many,
- * or where a tilt is none. */
-error_t abbe_scene_input_take(abbe_scene_input_changes *changes, int key, const char *text,
-                              const char *program);
+/* Options whose request is an abbe_scene_input_changes: those of any scene, and those of a stone's
+ * file. What is too much, or a tilt that is none, ends the program. */
+extern const abbe_parser abbe_scene_input_options, abbe_studio_options;
+#define ABBE_SCENE_INPUT_ALPHA_HELP                                                                \
+  "nothing behind the objects, and how much of each pixel they cover as alpha: premultiplied in "  \
+  "the EXR (channel A), straight in a PNG or WebP"
+/* As --set does. */
+void abbe_scene_input_set(abbe_scene_input_changes *changes, const char *text, const char *program);
 
 /* Takes ARGP_KEY_ARG: the scene, or a stone's file, behind which more of these may follow. */
 void abbe_scene_input_take_file(abbe_scene_input_changes *changes, const char **scene,

@@ -7,7 +7,6 @@
 #include "gl/plan/facts/render_desc.h"
 #include "scenes/import/scene_file.h"
 
-#include <argp.h>
 #include <cjson/cJSON.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -17,16 +16,6 @@ typedef struct plan_options {
   abbe_render_options render;
   bool json;
 } plan_options;
-
-static const abbe_take takes[] = {
-    ABBE_TAKE_CHILD(plan_options, 0, render),
-    ABBE_TAKE_FLAG(plan_options, 'j', json),
-    {0},
-};
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  return abbe_take_option(takes, key, text, state) ? 0 : ARGP_ERR_UNKNOWN;
-}
 
 static void print_text(const abbe_plan *plan) {
   for (int runs = 1; runs >= 0; runs--) {
@@ -58,21 +47,20 @@ static abbe_result print_json(const abbe_scene *scene, const abbe_plan *plan, ab
 }
 
 int abbe_command_plan(int argc, char **argv) {
-  static const struct argp_option options[] = {{"json", 'j', NULL, 0, "as JSON", 0}, {0}};
-  const struct argp_child children[] = {{abbe_render_options_argp(), 0, "The request:", 1}, {0}};
-  const struct argp argp = {
-      options,
-      parse,
-      NULL,
+  static const abbe_option options[] = {
+      {"json", 'j', NULL, 0, "as JSON", 0, ABBE_TAKE_FLAG(plan_options, json)},
+      ABBE_OPTIONS(plan_options, &abbe_render_options_argp, render, "The request:", 1),
+      {0}};
+
+  static const abbe_parser argp = {
+      options, NULL, NULL,
       "Says which passes and models a scene asks for, and which fact asks for each. Takes the "
       "options of abbe render, those of 'abbe methods --help' too. Needs no graphics.\v"
       "Examples:\n"
       "  abbe plan scenes/gem.yaml\n"
-      "  abbe plan scenes/gem.yaml --profile thesis --json\n",
-      children,
-      NULL,
-      NULL};
+      "  abbe plan scenes/gem.yaml --profile thesis --json\n"};
   plan_options o = {.render.program = argv[0]};
+  abbe_render_options_begin();
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &o);
   abbe_error error = {0};
   abbe_scene scene = {0};
@@ -105,10 +93,8 @@ static error_t methods_parse(int key, char *text, struct argp_state *state) {
 }
 
 int abbe_command_methods(int argc, char **argv) {
-  const struct argp argp = {
-      abbe_render_options_aside(),
-      methods_parse,
-      NULL,
+  const abbe_parser argp = {
+      abbe_render_options_aside(), methods_parse, NULL,
       "Lists the published methods that 'abbe render --profile NAME' draws by, as they were "
       "printed and, with -cie, with CIE weights, Fresnel's law and watts. Below are the options of "
       "'abbe render' that only they, pinholes and caustic volumes take, and its seldom ones.\v"
@@ -116,10 +102,7 @@ int abbe_command_methods(int argc, char **argv) {
       "  abbe methods\n"
       "  abbe render scenes/sphere.yaml --profile thesis --png thesis.png --view Plain\n"
       "  abbe render scenes/sphere.yaml --profile wyman2006-cie --fill quads --png quads.png\n"
-      "  abbe render scenes/metals.yaml --transport pinhole --pinholes 512 --png metals.png\n",
-      NULL,
-      NULL,
-      NULL};
+      "  abbe render scenes/metals.yaml --transport pinhole --pinholes 512 --png metals.png\n"};
   abbe_arguments_parse(&argp, 0, argc, argv, NULL);
   for (int i = 0; i < ABBE_PROFILE_COUNT; i++)
     printf("%-14s %s\n", abbe_profile_name((abbe_profile)i), abbe_method_of((abbe_profile)i)->says);

@@ -9,33 +9,28 @@
 #include <stdio.h>
 #include <string.h>
 
-enum {
-  OPTION_PRESET = 0x600,
-  OPTION_MAX_ERROR,
-  OPTION_BUDGET,
-  OPTION_PRESETS,
-  OPTION_FOR,
-  OPTION_TOOL
-};
+enum { OPTION_PRESET = 0x600, OPTION_FOR, OPTION_TOOL };
 
-static const struct argp_option options[] = {
+static const abbe_option options[] = {
     {"preset", OPTION_PRESET, "NAME", 0, "draft, balanced or accurate, as measured for such scenes",
-     2},
-    {"max-error", OPTION_MAX_ERROR, "E", 0,
+     2, ABBE_TAKE_BY_KEY},
+    {"max-error", 0, "E", 0,
      "the fastest tool and settings that promise a mean CIEDE2000 of at most E in the caustic; "
      "what "
      "is traced goes on until its own passes tell that",
-     2},
-    {"budget-ms", OPTION_BUDGET, "T", 0,
-     "the most accurate tool and settings that take at most T ms on this machine", 2},
+     2, ABBE_TAKE_NUMBER(abbe_preset_options, request.max_error, 1e-6, 1e6)},
+    {"budget-ms", 0, "T", 0,
+     "the most accurate tool and settings that take at most T ms on this machine", 2,
+     ABBE_TAKE_NUMBER(abbe_preset_options, request.budget_ms, 1e-3, 1e9)},
     {"for", OPTION_FOR, "picture|frame", 0,
      "whose time these mean: this picture's, from the start of the program to its end, or a "
      "frame's "
      "once the scene stands (picture)",
-     2},
+     2, ABBE_TAKE_BY_KEY},
     {"tool", OPTION_TOOL, "NAME", 0,
-     "for these: render, trace or trace-filter (whatever serves best)", 2},
-    {"presets", OPTION_PRESETS, "FILE", ABBE_ARGUMENT_READS, "others than the shipped ones", 2},
+     "for these: render, trace or trace-filter (whatever serves best)", 2, ABBE_TAKE_BY_KEY},
+    {"presets", 0, "FILE", ABBE_ARGUMENT_READS, "others than the shipped ones", 2,
+     ABBE_TAKE_TEXT(abbe_preset_options, request.file)},
     {0}};
 
 #define ABBE_NAME_OF(code, name) name,
@@ -44,18 +39,10 @@ static const char *const names[] = {ABBE_PRESETS(ABBE_NAME_OF)};
 static const char *const tools[] = {ABBE_PICTURE_TOOLS(ABBE_TOOL_OF)};
 static const char *const times[] = {"picture", "frame"};
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_NUMBER(abbe_preset_options, OPTION_MAX_ERROR, request.max_error, 1e-6, 1e6),
-    ABBE_TAKE_NUMBER(abbe_preset_options, OPTION_BUDGET, request.budget_ms, 1e-3, 1e9),
-    ABBE_TAKE_TEXT(abbe_preset_options, OPTION_PRESETS, request.file),
-    {0},
-};
-
 static error_t parse(int key, char *text, struct argp_state *state) {
   abbe_preset_options *o = state->input;
   abbe_preset_request *q = &o->request;
   int asked;
-  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
   case OPTION_PRESET:
     q->name = names[abbe_command_choice(o->program, "--preset", text, names, ABBE_PRESET_COUNT)];
@@ -86,7 +73,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-const struct argp abbe_preset_options_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
+const abbe_parser abbe_preset_options_argp = {.options = options, .parse = parse};
 
 static void add_unrest(double unrest, cJSON *p) {
   if (isfinite(unrest)) cJSON_AddNumberToObject(p, "unrest", unrest);

@@ -9,59 +9,44 @@
 #include "colorimetry/image/exr.h"
 #include "gl/accuracy/frame_times.h"
 
-#include <argp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-  OPTION_PNG = 0x200,
-  OPTION_AOVS,
-  OPTION_BANDS,
-  OPTION_STATS,
-  OPTION_BACKEND,
-  OPTION_FRAMES,
-  OPTION_JSON,
-  OPTION_MOVE
-};
+enum { OPTION_STATS = 0x200, OPTION_BACKEND, OPTION_FRAMES, OPTION_MOVE };
 
 typedef abbe_render_request request;
 
-static const struct argp_option options[] = {
+static const abbe_option options[] = {
     {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES,
-     "the scene-linear picture, .exr; or that for a display, by its ending as --png", 0},
-    {"png", OPTION_PNG, "FILE.png", ABBE_ARGUMENT_WRITES,
-     "the picture for a display, through OpenColorIO: .png, .webp, .jpg, .gif or .avif", 0},
-    {"aovs", OPTION_AOVS, NULL, 0, "direct and caustic light and distance in the EXR too", 0},
-    {"bands", OPTION_BANDS, "N", 0,
-     "N bands of wavelengths in the EXR and the saved map too: N frames more", 0},
+     "the scene-linear picture, .exr; or that for a display, by its ending as --png", 0,
+     ABBE_TAKE_OUTPUT(request, exr, png)},
+    {"png", 0, "FILE.png", ABBE_ARGUMENT_WRITES,
+     "the picture for a display, through OpenColorIO: .png, .webp, .jpg, .gif or .avif", 0,
+     ABBE_TAKE_OUTPUT(request, png, png)},
+    {"aovs", 0, NULL, 0, "direct and caustic light and distance in the EXR too", 0,
+     ABBE_TAKE_FLAG(request, aovs)},
+    {"bands", 0, "N", 0, "N bands of wavelengths in the EXR and the saved map too: N frames more",
+     0, ABBE_TAKE_COUNT(request, bands, 1, ABBE_RENDER_MAX_BANDS)},
     {"stats", OPTION_STATS, "FILE|-", ABBE_ARGUMENT_WRITES | ABBE_ARGUMENT_STREAMS,
-     "times, photons and the energy ledger as JSON; -: on standard output", 0},
-    {"json", OPTION_JSON, NULL, 0, "the same on standard output", 0},
+     "times, photons and the energy ledger as JSON; -: on standard output", 0, ABBE_TAKE_BY_KEY},
+    {"json", 0, NULL, 0, "the same on standard output", 0, ABBE_TAKE_FLAG(request, json)},
     {"frames", OPTION_FRAMES, "N|A:B", 0,
      "warm up, then report the median of N frames (1); A:B: frames A to B - 1 over time, numbered, "
      "and FILE.png, .webp or .gif that moves",
-     0},
+     0, ABBE_TAKE_BY_KEY},
     ABBE_FRAME_SERIES_MOVE(OPTION_MOVE, 0),
-    {"backend", OPTION_BACKEND, "NAME", 0, "cpu, gpu, or auto: a GPU where there is one (auto)", 0},
-    {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
+    {"backend", OPTION_BACKEND, "NAME", 0, "cpu, gpu, or auto: a GPU where there is one (auto)", 0,
+     ABBE_TAKE_BY_KEY},
+    {"quiet", 'q', NULL, 0, "no progress, no summary", 0, ABBE_TAKE_FLAG(request, quiet)},
+    ABBE_OPTIONS(request, &abbe_render_options_argp, render, "Speed and accuracy:", 1),
+    ABBE_OPTIONS(request, &abbe_map_options_argp, map, "Spectral map:", 3),
+    ABBE_OPTIONS(request, &abbe_preset_options_argp, preset, "By error or by time:", 2),
+    ABBE_OPTIONS(request, &abbe_error_options_argp, errors, "How far off it is:", 4),
+    ABBE_OPTIONS(request, &abbe_render_frames_argp, series, "From all around, and over time:", 5),
+    ABBE_OPTIONS(request, &abbe_screen_options_argp, screen,
+                 "How the picture for a display shows it:", 6),
     {0}};
-
-static const abbe_take takes[] = {
-    ABBE_TAKE_CHILD(request, 0, render),
-    ABBE_TAKE_CHILD(request, 1, map),
-    ABBE_TAKE_CHILD(request, 2, preset),
-    ABBE_TAKE_CHILD(request, 3, errors),
-    ABBE_TAKE_CHILD(request, 4, series),
-    ABBE_TAKE_CHILD(request, 5, screen),
-    ABBE_TAKE_OUTPUT(request, 'o', exr, png),
-    ABBE_TAKE_OUTPUT(request, OPTION_PNG, png, png),
-    ABBE_TAKE_FLAG(request, OPTION_AOVS, aovs),
-    ABBE_TAKE_COUNT(request, OPTION_BANDS, bands, 1, ABBE_RENDER_MAX_BANDS),
-    ABBE_TAKE_FLAG(request, OPTION_JSON, json),
-    ABBE_TAKE_FLAG(request, 'q', quiet),
-    {0},
-};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
 #define NAME_OF(code, name) name,
@@ -69,7 +54,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 #undef NAME_OF
   request *q = state->input;
   const char *p = q->render.program;
-  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
   case OPTION_STATS:
     if (strcmp(text, "-") == 0)
@@ -369,18 +353,8 @@ static abbe_result choose_and_draw(request *q, const abbe_scene *scene, abbe_err
 }
 
 int abbe_command_render(int argc, char **argv) {
-  const struct argp_child children[] = {
-      {abbe_render_options_argp(), 0, "Speed and accuracy:", 1},
-      {&abbe_map_options_argp, 0, "Spectral map:", 3},
-      {&abbe_preset_options_argp, 0, "By error or by time:", 2},
-      {&abbe_error_options_argp, 0, "How far off it is:", 4},
-      {&abbe_render_frames_argp, 0, "From all around, and over time:", 5},
-      {&abbe_screen_options_argp, 0, "How the picture for a display shows it:", 6},
-      {0}};
-  const struct argp argp = {
-      options,
-      parse,
-      NULL,
+  const abbe_parser argp = {
+      options, parse, NULL,
       "Renders a scene with its caustics to a scene-linear OpenEXR picture and to one for a "
       "display. 'abbe methods --help' shows the seldom options, and those of published methods, "
       "pinholes and caustic volumes.\v"
@@ -397,16 +371,14 @@ int abbe_command_render(int argc, char **argv) {
       "  abbe render scenes/water/pool.yaml --frames 0:48 --fps 24 --png pool.png --size 256x256\n"
       "  abbe render scenes/prism.yaml -o bands.exr --bands 20\n"
       "  abbe render scenes/stone.yaml --turntable 72 --png stone.png --part 3/8\n"
-      "  abbe render scenes/gem.yaml --save-map test.exr --map-like reference.exr\n",
-      children,
-      NULL,
-      NULL};
+      "  abbe render scenes/gem.yaml --save-map test.exr --map-like reference.exr\n"};
   request q = {.render.program = argv[0],
                .preset.program = argv[0],
                .preset.tool = -1,
                .errors.program = argv[0],
                .series.program = argv[0],
                .screen.program = argv[0]};
+  abbe_render_options_begin();
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
   abbe_scene scene = {0};

@@ -22,22 +22,26 @@ enum {
 };
 enum { MOST_AROUND = 9999 };
 
-static const struct argp_option options[] = {
+static const abbe_option options[] = {
     {"turntable", OPTION_TURNTABLE, "N", 0,
      "N frames from all around, numbered: FILE-0001.exr, FILE-0001.png, and FILE.png, .webp or "
      ".gif that moves",
-     5},
+     5, ABBE_TAKE_BY_KEY},
     {"turn", OPTION_TURN, "WHAT", 0,
      "of a turntable: camera, which goes around, or stone, which turns with its metal under lights "
      "and camera that stay (camera)",
-     5},
+     5, ABBE_TAKE_BY_KEY},
     {"part", OPTION_PART, "K/N", 0,
-     "only every N-th frame from the K-th on, 0/8 to 7/8, and none that moves", 5},
+     "only every N-th frame from the K-th on, 0/8 to 7/8, and none that moves", 5,
+     ABBE_TAKE_BY_KEY},
     {"resume", OPTION_RESUME, NULL, 0,
-     "draw those frames alone whose files are not there, or are of another request", 5},
+     "draw those frames alone whose files are not there, or are of another request", 5,
+     ABBE_TAKE_BY_KEY},
     {"merge", OPTION_MERGE, NULL, 0,
-     "draw nothing: make FILE.png, .webp or .gif of the numbered frames that are there", 5},
-    {"fps", OPTION_FPS, "F", 0, "frames a second, of time and of the picture that moves (25)", 5},
+     "draw nothing: make FILE.png, .webp or .gif of the numbered frames that are there", 5,
+     ABBE_TAKE_BY_KEY},
+    {"fps", OPTION_FPS, "F", 0, "frames a second, of time and of the picture that moves (25)", 5,
+     ABBE_TAKE_BY_KEY},
     {0}};
 
 /* What says nothing of one picture. */
@@ -90,7 +94,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-const struct argp abbe_render_frames_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
+const abbe_parser abbe_render_frames_argp = {.options = options, .parse = parse};
 
 /* v turned about the unit axis, the right-handed way. */
 static void turn(const double v[3], const double axis[3], double rad, double out[3]) {

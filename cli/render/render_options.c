@@ -13,35 +13,31 @@
 #include <string.h>
 
 /* Keys of the table's settings begin where the others end. */
-enum {
-  OPTION_SIZE = 0x100,
-  OPTION_RANGE,
-  OPTION_POLYGONS,
-  OPTION_OBSERVER,
-  OPTION_VOLUME,
-  OPTION_UNFILLED,
-  OPTION_MATERIALS,
-  OPTION_SETTING
-};
+enum { OPTION_POLYGONS = 0x100, OPTION_OBSERVER, OPTION_SETTING };
 
-static const struct argp_option others[] = {
-    {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
-    {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 1},
-    {"observer", OPTION_OBSERVER, "NAME", 0, ABBE_OBSERVER_HELP, 1},
-    {"volume", OPTION_VOLUME, "FILE.exr", ABBE_ARGUMENT_READS,
-     "the caustic volume that caustics are looked up in", 1},
-    {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
-     "a table instead of the scene's: default, thesis or a file", 1},
-    ABBE_SCENE_INPUT_OPTIONS(1),
-    ABBE_SCENE_INPUT_STUDIO_OPTIONS(1),
-    ABBE_SCENE_INPUT_ALPHA_OPTION(1),
-};
-static const struct argp_option others_aside[] = {
-    {"unfilled", OPTION_UNFILLED, NULL, 0, "of thesis, the map before its fill", 1},
+static const abbe_option others[] = {
+    {"size", 0, "WxH", 0, "pixels; the scene's own without", 1,
+     ABBE_TAKE_SIZE(abbe_render_options, desc.width, desc.height, ABBE_RENDER_MAX_SIDE)},
+    {"range", 0, "FROM:TO", 0, "wavelengths in nm (380:780)", 1,
+     ABBE_TAKE_RANGE(abbe_render_options, desc.min_nm, desc.max_nm)},
+    {"observer", OPTION_OBSERVER, "NAME", 0, ABBE_OBSERVER_HELP, 1, ABBE_TAKE_BY_KEY},
+    {"volume", 0, "FILE.exr", ABBE_ARGUMENT_READS,
+     "the caustic volume that caustics are looked up in", 1,
+     ABBE_TAKE_TEXT(abbe_render_options, volume_path)},
+    {"materials", 0, "TABLE", ABBE_ARGUMENT_READS,
+     "a table instead of the scene's: default, thesis or a file", 1,
+     ABBE_TAKE_TEXT(abbe_render_options, materials)},
+    ABBE_OPTIONS(abbe_render_options, &abbe_scene_input_options, changes, NULL, 0),
+    ABBE_OPTIONS(abbe_render_options, &abbe_studio_options, changes, NULL, 0),
+    {"alpha", 0, NULL, 0, ABBE_SCENE_INPUT_ALPHA_HELP, 1,
+     ABBE_TAKE_FLAG(abbe_render_options, changes.alpha)}};
+static const abbe_option others_aside[] = {
+    {"unfilled", 0, NULL, 0, "of thesis, the map before its fill", 1,
+     ABBE_TAKE_FLAG(abbe_render_options, unfilled)},
     {"polygons", OPTION_POLYGONS, "LIST", 0,
      "of wyman2006's quads and triangles: even beams, light by corners, those between surfaces "
      "culled, drawn in-light, such as corners,culled (none)",
-     1}};
+     1, ABBE_TAKE_BY_KEY}};
 
 enum {
   OTHERS = sizeof others / sizeof *others,
@@ -75,7 +71,7 @@ static void describe(const abbe_render_setting *s, char out[HELP_SIZE]) {
 
 /* Options of the settings that are shown aside, or of the others; flags are argp's, of each.
  * Returns how many there are. */
-static size_t list_settings(bool aside, int flags, struct argp_option *out) {
+static size_t list_settings(bool aside, int flags, abbe_option *out) {
   static char help[MOST_OPTIONS][HELP_SIZE];
   static const char *const arguments[] = {
       [ABBE_SETTING_COUNT] = "N", [ABBE_SETTING_NUMBER] = "X", [ABBE_SETTING_CHOICE] = "NAME"};
@@ -84,8 +80,9 @@ static size_t list_settings(bool aside, int flags, struct argp_option *out) {
     const abbe_render_setting *s = &abbe_render_settings[i];
     if (s->option == NULL || s->aside != aside) continue;
     describe(s, help[i]);
-    out[count++] = (struct argp_option){
-        s->option, OPTION_SETTING + (int)i, arguments[s->kind], flags, help[i], 1};
+    out[count++] =
+        (abbe_option){s->option, OPTION_SETTING + (int)i, arguments[s->kind], flags, help[i],
+                      1,         ABBE_TAKE_BY_KEY};
   }
   return count;
 }
@@ -131,20 +128,10 @@ static void take_setting(const abbe_render_setting *s, const char *text, const c
   }
 }
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_SIZE(abbe_render_options, OPTION_SIZE, desc.width, desc.height, ABBE_RENDER_MAX_SIDE),
-    ABBE_TAKE_RANGE(abbe_render_options, OPTION_RANGE, desc.min_nm, desc.max_nm),
-    ABBE_TAKE_FLAG(abbe_render_options, OPTION_UNFILLED, unfilled),
-    ABBE_TAKE_TEXT(abbe_render_options, OPTION_VOLUME, volume_path),
-    ABBE_TAKE_TEXT(abbe_render_options, OPTION_MATERIALS, materials),
-    {0},
-};
-
 static error_t parse(int key, char *text, struct argp_state *state) {
   abbe_render_options *o = state->input;
   abbe_render_desc *d = &o->desc;
   const char *p = o->program;
-  if (abbe_take_option(takes, key, text, state)) return 0;
   if (key >= OPTION_SETTING && key < OPTION_SETTING + (int)abbe_render_settings_count) {
     take_setting(&abbe_render_settings[key - OPTION_SETTING], text, p, d);
     return 0;
@@ -168,15 +155,15 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     o->changes.studio.rows = d->height;
     return 0;
   default:
-    return abbe_scene_input_take(&o->changes, key, text, p);
+    return ARGP_ERR_UNKNOWN;
   }
 }
 
-/* Those aside are taken, and shown on their own page. */
-const struct argp *abbe_render_options_argp(void) {
-  static struct argp_option options[OTHERS + MOST_OPTIONS];
-  static const struct argp argp = {options, parse, "SCENE.yaml\nSTONE.asc...", NULL, NULL,
-                                   NULL,    NULL};
+static abbe_option options[OTHERS + MOST_OPTIONS];
+const abbe_parser abbe_render_options_argp = {
+    .options = options, .parse = parse, .args_doc = "SCENE.yaml\nSTONE.asc..."};
+
+void abbe_render_options_begin(void) {
   memcpy(options, others, sizeof others);
   size_t count = OTHERS + list_settings(false, 0, options + OTHERS);
   count += list_settings(true, OPTION_HIDDEN, options + count);
@@ -184,14 +171,14 @@ const struct argp *abbe_render_options_argp(void) {
     options[count + i] = others_aside[i];
     options[count + i].flags |= OPTION_HIDDEN;
   }
-  return &argp;
 }
 
-const struct argp_option *abbe_render_options_aside(void) {
-  static struct argp_option options[MOST_OPTIONS];
-  const size_t count = list_settings(true, 0, options);
-  memcpy(options + count, others_aside, sizeof others_aside);
-  return options;
+const abbe_option *abbe_render_options_aside(void) {
+  static abbe_option aside[MOST_OPTIONS];
+  const size_t count = list_settings(true, 0, aside);
+  memcpy(aside + count, others_aside, sizeof others_aside);
+  for (size_t i = 0; i < count + ASIDE; i++) aside[i].take.kind = 0;
+  return aside;
 }
 
 abbe_result abbe_render_options_load_volume(abbe_render_options *request, abbe_error *error) {
@@ -207,29 +194,23 @@ int abbe_render_options_end(const abbe_render_options *request, bool scene_loade
   return scene_loaded && result == ABBE_INVALID_ARGUMENT ? ABBE_EXIT_USAGE : code;
 }
 
-enum { OPTION_ERROR_BARS = 0x700, OPTION_ERROR_PNG, OPTION_MEAN };
+enum { OPTION_ERROR_BARS = 0x700 };
 
-static const struct argp_option options[] = {
+static const abbe_option error_options[] = {
     {"error-bars", OPTION_ERROR_BARS, "N", OPTION_ARG_OPTIONAL,
      "layers stderr.*: what sampling leaves out, one standard error a pixel, from N variants of "
      "the "
      "picture (4) and a coarse one: as many more frames",
-     4},
-    {"error-png", OPTION_ERROR_PNG, "FILE.png", ABBE_ARGUMENT_WRITES, "the errors in false colours",
-     4},
-    {"mean", OPTION_MEAN, NULL, 0,
-     "the picture is its mean with the variants, with that one's errors: nearer to the truth", 4},
+     4, ABBE_TAKE_BY_KEY},
+    {"error-png", 0, "FILE.png", ABBE_ARGUMENT_WRITES, "the errors in false colours", 4,
+     ABBE_TAKE_TARGET(abbe_error_options, png, ".png")},
+    {"mean", 0, NULL, 0,
+     "the picture is its mean with the variants, with that one's errors: nearer to the truth", 4,
+     ABBE_TAKE_FLAG(abbe_error_options, mean)},
     {0}};
-
-static const abbe_take error_options_takes[] = {
-    ABBE_TAKE_TARGET(abbe_error_options, OPTION_ERROR_PNG, png, ".png"),
-    ABBE_TAKE_FLAG(abbe_error_options, OPTION_MEAN, mean),
-    {0},
-};
 
 static error_t error_options_parse(int key, char *text, struct argp_state *state) {
   abbe_error_options *o = state->input;
-  if (abbe_take_option(error_options_takes, key, text, state)) return 0;
   switch (key) {
   case OPTION_ERROR_BARS:
     o->asked = true;
@@ -246,8 +227,8 @@ static error_t error_options_parse(int key, char *text, struct argp_state *state
   }
 }
 
-const struct argp abbe_error_options_argp = {options, error_options_parse, NULL, NULL, NULL, NULL,
-                                             NULL};
+const abbe_parser abbe_error_options_argp = {.options = error_options,
+                                             .parse = error_options_parse};
 
 static abbe_result put(const abbe_error_options *o, const abbe_error_bars *bars,
                        abbe_image *picture, abbe_error *error) {

@@ -4,6 +4,7 @@
 #ifndef ABBE_CLI_RENDER_RENDER_OPTIONS_H
 #define ABBE_CLI_RENDER_RENDER_OPTIONS_H
 
+#include "cli/base/arguments.h"
 #include "cli/options/scene_input.h"
 #include "gl/accuracy/error_bars.h"
 #include "gl/accuracy/preset.h"
@@ -11,7 +12,6 @@
 #include "gl/plan/plan.h"
 #include "library/choice/picture_choice.h"
 
-#include <argp.h>
 #include <stdbool.h>
 
 typedef struct abbe_render_options {
@@ -27,10 +27,12 @@ typedef struct abbe_render_options {
 
 /* An argp child: the table of settings, size, range …, and the scene as the one argument. Its input
  * is an abbe_render_options with program set. */
-const struct argp *abbe_render_options_argp(void);
+extern const abbe_parser abbe_render_options_argp;
+/* Makes the options of the table, those that are shown aside as hidden ones; to be called first. */
+void abbe_render_options_begin(void);
 /* Those of them that `abbe methods --help` shows: seldom wanted, or of published methods, pinholes
  * and caustic volumes alone. */
-const struct argp_option *abbe_render_options_aside(void);
+const abbe_option *abbe_render_options_aside(void);
 
 /* The volume that is named, into the request; errors of abbe_volume_file_read. */
 abbe_result abbe_render_options_load_volume(abbe_render_options *request, abbe_error *error);
@@ -53,7 +55,7 @@ typedef struct abbe_error_options {
 
 /* An argp child: --error-bars, --error-png, --mean. Its input is an abbe_error_options with program
  * set. */
-extern const struct argp abbe_error_options_argp;
+extern const abbe_parser abbe_error_options_argp;
 
 /* Draws the variants under a progress bar, puts the errors into the picture as layers and, with
  * --mean, the mean into its first three channels; writes --error-png. Nothing where nothing was
@@ -81,7 +83,7 @@ typedef struct abbe_preset_options {
 
 /* An argp child: --preset, --max-error, --budget-ms, --for, --tool, --presets. Its input is an
  * abbe_preset_options with program set and tool -1. */
-extern const struct argp abbe_preset_options_argp;
+extern const abbe_parser abbe_preset_options_argp;
 
 /* Adds "promise" to the statistics: what was chosen, promised and met; nothing where nothing was
  * requested. `estimate` is the caustic's mean CIEDE2000 by the picture's error bars; below 0: not

@@ -3,6 +3,7 @@
 #ifndef ABBE_CLI_RENDER_RENDER_REQUEST_H
 #define ABBE_CLI_RENDER_RENDER_REQUEST_H
 
+#include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/options/frame_series.h"
 #include "cli/options/picture_options.h"
@@ -11,8 +12,6 @@
 #include "colorimetry/rgb_space.h"
 #include "gl/device/context.h"
 #include "library/choice/picture_choice.h"
-
-#include <argp.h>
 
 /* The picture of `abbe render` where the tracer serves the request best. */
 
@@ -115,7 +114,7 @@ abbe_result abbe_render_check_frame_in_time(abbe_render_request *request, const 
  * scene is read again for each frame, and the renderer finds out what has moved. */
 
 /* --turntable and what goes with it. Its input is the request's abbe_frame_series. */
-extern const struct argp abbe_render_frames_argp;
+extern const abbe_parser abbe_render_frames_argp;
 
 /* Draws and writes all frames of the request, with a bar: FILE-0001.exr and FILE-0001.png and so
  * on, and FILE.png of all, beside and renamed; of a part, its frames alone. statistics receives the

@@ -9,35 +9,20 @@
 #include "validation/trace/tracer/trace_run.h"
 #include "validation/trace/tracer/tracer.h"
 
-#include <argp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 enum {
-  OPTION_PNG = 0x400,
-  OPTION_SPP,
-  OPTION_TIME,
-  OPTION_UNTIL_ERROR,
-  OPTION_PHYSICS,
+  OPTION_PHYSICS = 0x400,
   OPTION_POLARISATION,
-  OPTION_PHOTONS,
-  OPTION_SIZE,
   OPTION_MAP,
-  OPTION_BANDS,
   OPTION_SPACE,
   OPTION_OBSERVER,
-  OPTION_HALF,
   OPTION_FILTER,
-  OPTION_MATERIALS,
-  OPTION_CHECKPOINT,
   OPTION_PASSES,
-  OPTION_MERGE,
-  OPTION_INCOMPLETE,
   OPTION_STATS,
-  OPTION_JSON,
-  OPTION_RATES,
   OPTION_MOVE
 };
 
@@ -45,53 +30,72 @@ enum { DEFAULT_PASSES = 64, MOST_PASSES = 1000000 };
 
 typedef abbe_trace_request request;
 
-static const struct argp_option options[] = {
+static const abbe_option options[] = {
     {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES,
      "the scene-linear picture with its standard errors, .exr; or that for a display, by its "
      "ending as --png",
-     0},
-    {"png", OPTION_PNG, "FILE.png", ABBE_ARGUMENT_WRITES,
-     "the picture for a display, through OpenColorIO: .png, .webp, .jpg, .gif or .avif", 0},
+     0, ABBE_TAKE_OUTPUT(request, exr, png)},
+    {"png", 0, "FILE.png", ABBE_ARGUMENT_WRITES,
+     "the picture for a display, through OpenColorIO: .png, .webp, .jpg, .gif or .avif", 0,
+     ABBE_TAKE_OUTPUT(request, png, png)},
     {"stats", OPTION_STATS, "FILE|-", ABBE_ARGUMENT_WRITES | ABBE_ARGUMENT_STREAMS,
-     "passes, rays, times and the energy ledger as JSON; -: on standard output", 0},
-    {"json", OPTION_JSON, NULL, 0, "the same on standard output", 0},
-    {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
-    {"spp", OPTION_SPP, "N", 0, "passes: a sample a pixel or more, each with its photons (64)", 1},
-    {"time", OPTION_TIME, "SECONDS", 0, "stop after this time", 1},
-    {"until-error", OPTION_UNTIL_ERROR, "X", 0,
-     "stop when the relative standard error is below X, 0.01 say", 1},
-    {"photons", OPTION_PHOTONS, "N", 0, "photons a pass (1048576, or four a pixel)", 1},
+     "passes, rays, times and the energy ledger as JSON; -: on standard output", 0,
+     ABBE_TAKE_BY_KEY},
+    {"json", 0, NULL, 0, "the same on standard output", 0, ABBE_TAKE_FLAG(request, json)},
+    {"quiet", 'q', NULL, 0, "no progress, no summary", 0, ABBE_TAKE_FLAG(request, quiet)},
+    {"spp", 0, "N", 0, "passes: a sample a pixel or more, each with its photons (64)", 1,
+     ABBE_TAKE_COUNT(request, passes, 1, MOST_PASSES)},
+    {"time", 0, "SECONDS", 0, "stop after this time", 1,
+     ABBE_TAKE_NUMBER(request, seconds, 0.001, 1e9)},
+    {"until-error", 0, "X", 0, "stop when the relative standard error is below X, 0.01 say", 1,
+     ABBE_TAKE_NUMBER(request, until, 1e-9, 1e9)},
+    {"photons", 0, "N", 0, "photons a pass (1048576, or four a pixel)", 1,
+     ABBE_TAKE_COUNT(request, desc.photons, 1, ABBE_TRACER_MAX_PHOTONS)},
     {"physics", OPTION_PHYSICS, "NAME", 0,
-     "full, or matched: what the renderer's plan models and no more", 1},
+     "full, or matched: what the renderer's plan models and no more", 1, ABBE_TAKE_BY_KEY},
     {"polarisation", OPTION_POLARISATION, "NAME", 0,
      "auto: polarised light where the scene has polarisers, or crystals in line; or on, or off, "
      "which leaves them out",
-     1},
-    {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
+     1, ABBE_TAKE_BY_KEY},
+    {"size", 0, "WxH", 0, "pixels; the scene's own without", 1,
+     ABBE_TAKE_SIZE(request, desc.width, desc.height, ABBE_TRACER_MAX_SIDE)},
     {"map", OPTION_MAP, "N|WxH", 0, "texels a side of the receiver map, or across and down (512)",
-     1},
-    {"bands", OPTION_BANDS, "N", 0, "spectral layers too, N bands over the range", 1},
-    {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
-    {"observer", OPTION_OBSERVER, "NAME", 0, ABBE_OBSERVER_HELP, 1},
+     1, ABBE_TAKE_BY_KEY},
+    {"bands", 0, "N", 0, "spectral layers too, N bands over the range", 1,
+     ABBE_TAKE_COUNT(request, desc.bands, 1, 256)},
+    {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1,
+     ABBE_TAKE_BY_KEY},
+    {"observer", OPTION_OBSERVER, "NAME", 0, ABBE_OBSERVER_HELP, 1, ABBE_TAKE_BY_KEY},
     {"filter", OPTION_FILTER, NULL, 0,
-     "take noise off the picture, by non-local means; what was traced is kept as raw.*", 1},
-    {"half", OPTION_HALF, NULL, 0, "files in half precision: 11 bits, and half the size", 1},
-    ABBE_SCENE_INPUT_OPTIONS(1),
-    ABBE_SCENE_INPUT_STUDIO_OPTIONS(1),
-    ABBE_SCENE_INPUT_ALPHA_OPTION(1),
-    {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
-     "a table instead of the scene's: default, thesis or a file", 1},
+     "take noise off the picture, by non-local means; what was traced is kept as raw.*", 1,
+     ABBE_TAKE_BY_KEY},
+    {"half", 0, NULL, 0, "files in half precision: 11 bits, and half the size", 1,
+     ABBE_TAKE_FLAG(request, half)},
+    ABBE_OPTIONS(request, &abbe_scene_input_options, changes, NULL, 0),
+    ABBE_OPTIONS(request, &abbe_studio_options, changes, NULL, 0),
+    {"alpha", 0, NULL, 0, ABBE_SCENE_INPUT_ALPHA_HELP, 1, ABBE_TAKE_FLAG(request, changes.alpha)},
+    {"materials", 0, "TABLE", ABBE_ARGUMENT_READS,
+     "a table instead of the scene's: default, thesis or a file", 1,
+     ABBE_TAKE_TEXT(request, materials)},
     ABBE_FRAME_SERIES_MOVE(OPTION_MOVE, 5),
-    ABBE_WORK_OPTIONS(1, 2),
-    {"checkpoint", OPTION_CHECKPOINT, "FILE", ABBE_ARGUMENT_WRITES,
-     "keep it there, also when all is done (OUTPUT.checkpoint, until all is done)", 2},
+    ABBE_WORK_OPTIONS(request, work, 1, 2),
+    {"checkpoint", 0, "FILE", ABBE_ARGUMENT_WRITES,
+     "keep it there, also when all is done (OUTPUT.checkpoint, until all is done)", 2,
+     ABBE_TAKE_TEXT(request, checkpoint)},
     {"passes", OPTION_PASSES, "A:B", 0,
      "passes A to B - 1 of the whole, of --spp N, alone, into --checkpoint FILE, and no other file",
-     2},
-    {"merge", OPTION_MERGE, NULL, 0,
-     "trace nothing: put parts together, the checkpoints named behind the scene", 2},
-    {"incomplete", OPTION_INCOMPLETE, NULL, 0, "merge also where passes are missing", 2},
-    {"rates", OPTION_RATES, NULL, 0, "rays a second, beside Embree's own rate on the same rays", 2},
+     2, ABBE_TAKE_BY_KEY},
+    {"merge", 0, NULL, 0,
+     "trace nothing: put parts together, the checkpoints named behind the scene", 2,
+     ABBE_TAKE_FLAG(request, merge)},
+    {"incomplete", 0, NULL, 0, "merge also where passes are missing", 2,
+     ABBE_TAKE_FLAG(request, incomplete)},
+    {"rates", 0, NULL, 0, "rays a second, beside Embree's own rate on the same rays", 2,
+     ABBE_TAKE_FLAG(request, rates)},
+    ABBE_OPTIONS(request, &abbe_map_options_argp, map, "Receiver map:", 3),
+    ABBE_OPTIONS(request, &abbe_screen_options_argp, screen,
+                 "How the picture for a display shows it:", 4),
+    ABBE_OPTIONS(request, &abbe_trace_frames_argp, series, "Over time:", 5),
     {0}};
 
 #define ABBE_NAME_OF_3(code, name, ocio) name,
@@ -149,9 +153,7 @@ static error_t parse_work(int key, char *text, request *q) {
     d->observer = abbe_spectral_options_observer(p, text);
     return 0;
   default:
-    return abbe_work_options_take(&q->work, key, text, p) == 0
-               ? 0
-               : abbe_scene_input_take(&q->changes, key, text, p);
+    return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -181,29 +183,6 @@ static void check_parts(const request *q, struct argp_state *state) {
     argp_error(state, "%s goes without --%s", name, q->rates ? "rates" : "resume");
 }
 
-static const abbe_take takes[] = {
-    ABBE_TAKE_OUTPUT(request, 'o', exr, png),
-    ABBE_TAKE_OUTPUT(request, OPTION_PNG, png, png),
-    ABBE_TAKE_FLAG(request, OPTION_JSON, json),
-    ABBE_TAKE_FLAG(request, 'q', quiet),
-    ABBE_TAKE_TEXT(request, OPTION_MATERIALS, materials),
-    ABBE_TAKE_FLAG(request, OPTION_HALF, half),
-    ABBE_TAKE_TEXT(request, OPTION_CHECKPOINT, checkpoint),
-    ABBE_TAKE_FLAG(request, OPTION_RATES, rates),
-    ABBE_TAKE_CHILD(request, 0, map),
-    ABBE_TAKE_CHILD(request, 1, screen),
-    ABBE_TAKE_CHILD(request, 2, series),
-    ABBE_TAKE_COUNT(request, OPTION_SPP, passes, 1, MOST_PASSES),
-    ABBE_TAKE_FLAG(request, OPTION_MERGE, merge),
-    ABBE_TAKE_FLAG(request, OPTION_INCOMPLETE, incomplete),
-    ABBE_TAKE_NUMBER(request, OPTION_TIME, seconds, 0.001, 1e9),
-    ABBE_TAKE_NUMBER(request, OPTION_UNTIL_ERROR, until, 1e-9, 1e9),
-    ABBE_TAKE_COUNT(request, OPTION_PHOTONS, desc.photons, 1, ABBE_TRACER_MAX_PHOTONS),
-    ABBE_TAKE_SIZE(request, OPTION_SIZE, desc.width, desc.height, ABBE_TRACER_MAX_SIDE),
-    ABBE_TAKE_COUNT(request, OPTION_BANDS, desc.bands, 1, 256),
-    {0},
-};
-
 static void take_part(request *q, const char *path) {
   const char **parts = realloc(q->parts, (q->part_count + 1) * sizeof *parts);
   if (parts == NULL) {
@@ -216,7 +195,6 @@ static void take_part(request *q, const char *path) {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   request *q = state->input;
-  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
   case OPTION_STATS:
     if (strcmp(text, "-") == 0)
@@ -378,15 +356,8 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
 }
 
 int abbe_command_trace(int argc, char **argv) {
-  static const struct argp_child children[] = {
-      {&abbe_map_options_argp, 0, "Receiver map:", 3},
-      {&abbe_screen_options_argp, 0, "How the picture for a display shows it:", 4},
-      {&abbe_trace_frames_argp, 0, "Over time:", 5},
-      {0}};
-  static const struct argp argp = {
-      options,
-      parse,
-      "SCENE.yaml\nSTONE.asc...\nSCENE.yaml --merge PART...",
+  static const abbe_parser argp = {
+      options, parse, "SCENE.yaml\nSTONE.asc...\nSCENE.yaml --merge PART...",
       "Traces what light really does in a scene, with standard errors: the reference.\v"
       "Examples:\n"
       "  abbe trace scenes/sphere.yaml -o sphere.exr --png sphere.png\n"
@@ -397,10 +368,7 @@ int abbe_command_trace(int argc, char **argv) {
       "  abbe trace scenes/water/pool.yaml --frames 0:24 --png pool.png --spp 8 --filter\n"
       "  abbe trace scenes/gem.yaml -o matched.exr --physics matched\n"
       "  abbe trace scenes/gem.yaml -o gem.exr --spp 64 --passes 8:16 --checkpoint part-1.ck\n"
-      "  abbe trace scenes/gem.yaml -o gem.exr --merge part-*.ck\n",
-      children,
-      NULL,
-      NULL};
+      "  abbe trace scenes/gem.yaml -o gem.exr --merge part-*.ck\n"};
   request q = {
       .program = argv[0], .screen.program = argv[0], .series.program = argv[0], .work.every_s = 30};
   abbe_error error = {0};

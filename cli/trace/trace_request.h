@@ -2,13 +2,12 @@
 #ifndef ABBE_CLI_TRACE_TRACE_REQUEST_H
 #define ABBE_CLI_TRACE_TRACE_REQUEST_H
 
+#include "cli/base/arguments.h"
 #include "cli/options/frame_series.h"
 #include "cli/options/picture_options.h"
 #include "cli/options/scene_input.h"
 #include "validation/trace/tracer/trace_run.h"
 #include "validation/trace/tracer/tracer.h"
-
-#include <argp.h>
 
 typedef struct abbe_trace_request {
   const char *program, *scene, *materials;
@@ -36,7 +35,7 @@ typedef struct abbe_trace_request {
 /* Frames of `abbe trace --frames A:B`, and the picture that moves. */
 
 /* --frames and what goes with it. Its input is the request's abbe_frame_series. */
-extern const struct argp abbe_trace_frames_argp;
+extern const abbe_parser abbe_trace_frames_argp;
 
 /* Ends the program where options of the request do not go together with frames, or without. */
 void abbe_trace_frames_check(const abbe_trace_request *q, struct argp_state *state);

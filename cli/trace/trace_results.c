@@ -147,22 +147,20 @@ void abbe_trace_summarise(const abbe_trace_request *q, const abbe_tracer *tracer
             (unsigned long long)s.cuts);
 }
 
-enum { OPTION_FRAMES = 0x900, OPTION_FPS, OPTION_PART };
+enum { OPTION_FRAMES = 0x900, OPTION_PART };
 
-static const struct argp_option options[] = {
+static const abbe_option options[] = {
     {"frames", OPTION_FRAMES, "A:B", 0,
-     "frames A to B - 1 over time, numbered, and FILE.png, .webp or .gif that moves", 5},
-    {"fps", OPTION_FPS, "F", 0, "frames a second, of time and of the picture that moves (25)", 5},
+     "frames A to B - 1 over time, numbered, and FILE.png, .webp or .gif that moves", 5,
+     ABBE_TAKE_BY_KEY},
+    {"fps", 0, "F", 0, "frames a second, of time and of the picture that moves (25)", 5,
+     ABBE_TAKE_NUMBER(abbe_frame_series, per_second, 0.1, 1000)},
     {"part", OPTION_PART, "K/N", 0, "only every N-th frame from the K-th on, and none that moves",
-     5},
+     5, ABBE_TAKE_BY_KEY},
     {0}};
-
-static const abbe_take takes[] = {
-    ABBE_TAKE_NUMBER(abbe_frame_series, OPTION_FPS, per_second, 0.1, 1000), {0}};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   abbe_frame_series *s = state->input;
-  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
   case OPTION_FRAMES:
     abbe_frame_series_take(s, text);
@@ -175,7 +173,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-const struct argp abbe_trace_frames_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
+const abbe_parser abbe_trace_frames_argp = {.options = options, .parse = parse};
 
 void abbe_trace_frames_check(const abbe_trace_request *q, struct argp_state *state) {
   const abbe_frame_series *s = &q->series;

@@ -11,7 +11,6 @@
 #include "scenes/volume/caustic_volume.h"
 #endif
 
-#include <argp.h>
 #include <limits.h>
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -21,21 +20,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum {
-  OPTION_SCRIPT = 0x100,
-  OPTION_SIZE,
-  OPTION_KEEP,
-  OPTION_LAST,
-  OPTION_MATERIALS,
-  OPTION_OCIO,
-  OPTION_SERVE,
-  OPTION_LISTEN,
-  OPTION_VOLUME,
-  OPTION_WAVELENGTHS,
-  OPTION_PHOTONS,
-  OPTION_MAP,
-  OPTION_MATERIAL
-};
+enum { OPTION_LAST = 0x100, OPTION_SERVE, OPTION_LISTEN, OPTION_SET };
 
 enum { MOST_PICTURES = 16 };
 
@@ -49,53 +34,47 @@ typedef struct view_options {
   abbe_scene_input_changes changes;
 } view_options;
 
-static const struct argp_option options[] = {
-    {"size", OPTION_SIZE, "WxH", 0, "of the window, pixels (900x560)", 1},
-    {"keep", OPTION_KEEP, "NAME", 0,
-     "what kept files are called: NAME.exr, NAME.png, NAME.yaml (the scene's name and -view)", 1},
+static const abbe_option options[] = {
+    {"size", 0, "WxH", 0, "of the window, pixels (900x560)", 1,
+     ABBE_TAKE_SIZE(view_options, width, height, 8192)},
+    {"keep", 0, "NAME", 0,
+     "what kept files are called: NAME.exr, NAME.png, NAME.yaml (the scene's name and -view)", 1,
+     ABBE_TAKE_TEXT(view_options, keep)},
     {"last", OPTION_LAST, "STAGE", 0,
-     "where refining ends: moving, balanced, accurate, mean, traced (traced)", 1},
-    {"ocio", OPTION_OCIO, "FILE", ABBE_ARGUMENT_READS,
-     "an OpenColorIO configuration ($OCIO, else Abbe's own)", 1},
-    {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
-     "a table instead of the scene's: default, thesis or a file", 1},
-    {"set", ABBE_SCENE_INPUT_SET, "KEY=VALUE", 0,
-     "another value in the scene to begin with, such as camera.fov=30; may be repeated", 1},
-    ABBE_SCENE_INPUT_STUDIO_OPTIONS(1),
-    {"material", OPTION_MATERIAL, "STONE", 0, "of which a stone's file is", 1},
-    {"volume", OPTION_VOLUME, "FILE.exr", ABBE_ARGUMENT_READS,
-     "look caustics up in what abbe volume has made, wherever lights and the object are dragged",
-     1},
-    {"wavelengths", OPTION_WAVELENGTHS, "N", 0, "at rest, for all stages (as each stage has them)",
-     1},
-    {"photons", OPTION_PHOTONS, "N", 0, "a side, so too", 1},
-    {"map", OPTION_MAP, "N", 0, "texels a side, so too", 1},
-    {"script", OPTION_SCRIPT, "FILE", ABBE_ARGUMENT_READS,
-     "lead the viewer by a script, without a display", 2},
+     "where refining ends: moving, balanced, accurate, mean, traced (traced)", 1, ABBE_TAKE_BY_KEY},
+    {"ocio", 0, "FILE", ABBE_ARGUMENT_READS,
+     "an OpenColorIO configuration ($OCIO, else Abbe's own)", 1,
+     ABBE_TAKE_TEXT(view_options, ocio)},
+    {"materials", 0, "TABLE", ABBE_ARGUMENT_READS,
+     "a table instead of the scene's: default, thesis or a file", 1,
+     ABBE_TAKE_TEXT(view_options, materials)},
+    {"set", OPTION_SET, "KEY=VALUE", 0,
+     "another value in the scene to begin with, such as camera.fov=30; may be repeated", 1,
+     ABBE_TAKE_BY_KEY},
+    ABBE_OPTIONS(view_options, &abbe_studio_options, changes, NULL, 0),
+    {"material", 0, "STONE", 0, "of which a stone's file is", 1,
+     ABBE_TAKE_TEXT(view_options, changes.studio.material)},
+    {"volume", 0, "FILE.exr", ABBE_ARGUMENT_READS,
+     "look caustics up in what abbe volume has made, wherever lights and the object are dragged", 1,
+     ABBE_TAKE_TEXT(view_options, volume)},
+    {"wavelengths", 0, "N", 0, "at rest, for all stages (as each stage has them)", 1,
+     ABBE_TAKE_COUNT(view_options, wavelengths, 1, ABBE_RENDER_MAX_WAVELENGTHS)},
+    {"photons", 0, "N", 0, "a side, so too", 1,
+     ABBE_TAKE_COUNT(view_options, photons, 1, ABBE_RENDER_MAX_PHOTONS)},
+    {"map", 0, "N", 0, "texels a side, so too", 1,
+     ABBE_TAKE_COUNT(view_options, map_size, 1, ABBE_RENDER_MAX_MAP)},
+    {"script", 0, "FILE", ABBE_ARGUMENT_READS, "lead the viewer by a script, without a display", 2,
+     ABBE_TAKE_TEXT(view_options, script)},
     {"serve", OPTION_SERVE, "PORT", 0,
      "without a display: a page for a browser on this machine, its address with a token on "
      "standard output; 0: any free port",
-     2},
+     2, ABBE_TAKE_BY_KEY},
     {"listen", OPTION_LISTEN, "PORT", OPTION_ARG_OPTIONAL,
      "show the pictures that programs on this machine send by tev's protocol (14158); 0: any free "
      "port; it is said on standard output",
-     2},
+     2, ABBE_TAKE_BY_KEY},
+    ABBE_OPTIONS(view_options, &abbe_spectral_options_argp, spectral, "A picture by its bands:", 3),
     {0}};
-
-static const abbe_take takes[] = {
-    ABBE_TAKE_TEXT(view_options, OPTION_SCRIPT, script),
-    ABBE_TAKE_TEXT(view_options, OPTION_KEEP, keep),
-    ABBE_TAKE_COUNT(view_options, OPTION_WAVELENGTHS, wavelengths, 1, ABBE_RENDER_MAX_WAVELENGTHS),
-    ABBE_TAKE_COUNT(view_options, OPTION_PHOTONS, photons, 1, ABBE_RENDER_MAX_PHOTONS),
-    ABBE_TAKE_COUNT(view_options, OPTION_MAP, map_size, 1, ABBE_RENDER_MAX_MAP),
-    ABBE_TAKE_TEXT(view_options, OPTION_MATERIALS, materials),
-    ABBE_TAKE_TEXT(view_options, OPTION_MATERIAL, changes.studio.material),
-    ABBE_TAKE_TEXT(view_options, OPTION_VOLUME, volume),
-    ABBE_TAKE_TEXT(view_options, OPTION_OCIO, ocio),
-    ABBE_TAKE_SIZE(view_options, OPTION_SIZE, width, height, 8192),
-    ABBE_TAKE_CHILD(view_options, 0, spectral),
-    {0},
-};
 
 /* By its ending: a picture to look at, whether it can be read or not. */
 static bool is_picture(const char *path) {
@@ -145,8 +124,10 @@ static void check_pictures(const view_options *o, struct argp_state *state) {
 static error_t parse(int key, char *text, struct argp_state *state) {
   static const char *const stages[] = {"moving", "balanced", "accurate", "mean", "traced"};
   view_options *o = state->input;
-  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
+  case OPTION_SET:
+    abbe_scene_input_set(&o->changes, text, o->program);
+    return 0;
   case OPTION_SERVE:
     o->port = (int)abbe_command_count(o->program, "--serve", text, 0, 65535);
     return 0;
@@ -175,7 +156,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
       argp_error(state, "--script or --serve, not both lead one viewer");
     return 0;
   default:
-    return abbe_scene_input_take(&o->changes, key, text, o->program);
+    return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -329,14 +310,9 @@ static abbe_result view(view_options *o, abbe_error *error) {
 }
 #endif
 
-static const struct argp_child children[] = {
-    {&abbe_spectral_options_argp, 0, "A picture by its bands:", 3}, {0}};
-
 int abbe_command_view(int argc, char **argv) {
-  static const struct argp argp = {
-      options,
-      parse,
-      "SCENE.yaml\nSTONE.asc...\nPICTURE.exr...",
+  static const abbe_parser argp = {
+      options, parse, "SCENE.yaml\nSTONE.asc...\nPICTURE.exr...",
       "Shows a scene in a window: turn it, change it, and see the light follow. Or looks at "
       "pictures: their channels, bands and spectra.\v"
       "Left drag turns, middle drag or shift moves, the wheel goes nearer, right drag\n"
@@ -354,10 +330,7 @@ int abbe_command_view(int argc, char **argv) {
       "  abbe view docs/examples/ball.yaml --volume ball-volume.exr\n"
       "  abbe view scenes/gem.yaml --serve 8080\n"
       "  abbe view bands.exr --lit-by D65 --illuminant A\n"
-      "  abbe view before.exr after.exr",
-      children,
-      NULL,
-      NULL};
+      "  abbe view before.exr after.exr"};
   view_options o = {.program = argv[0],
                     .spectral.program = argv[0],
                     .width = 900,
