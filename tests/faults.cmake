@@ -72,7 +72,10 @@ target_link_options(test_gl_faults PRIVATE LINKER:--wrap=abbe_context_osmesa)
 abbe_test(barriers gl WRAPPED abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 target_link_options(test_barriers PRIVATE LINKER:--wrap=abbe_gl_load)
 abbe_test(watchdog gl WRAPPED abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
-target_link_options(test_watchdog PRIVATE LINKER:--wrap=abbe_gl_load LINKER:--wrap=abbe_gpu_make)
+target_link_options(test_watchdog PRIVATE LINKER:--wrap=abbe_gl_load LINKER:--wrap=abbe_gpu_make
+  LINKER:--wrap=abbe_photon_paths_serve)
+abbe_test(photons gl WRAPPED abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
+target_link_options(test_photons PRIVATE LINKER:--wrap=abbe_photon_paths_serve)
 
 # The text of every shader, and what the reference compiler of GLSL says of it.
 add_executable(shader_texts gl/device/shader_texts.c)

@@ -212,7 +212,7 @@ static void map_paths(const abbe_deposit_pass *pass, bool fine, abbe_gpu_maps *m
   p->warp = abbe_gpu_map(m, pass->map->views->warps, GL_MAP_READ_BIT);
   if (p->tint_count > 0) p->tints = abbe_gpu_map(m, trace->spectra->tints, GL_MAP_READ_BIT);
   if (!m->whole) return;
-  p->photons = (const abbe_path_photon *)(const void *)(photons + ABBE_PHOTON_HEADER);
+  p->photons = (const abbe_photon *)(const void *)(photons + ABBE_PHOTON_HEADER);
   p->warp += p->light * ABBE_WARP_STEPS;
   if (p->tint_count > 0) p->tints += tints;
   if (fine) p->pairs += ABBE_GPU_LIST_HEADER / sizeof *p->pairs;
@@ -251,7 +251,10 @@ static abbe_result deposit_here(abbe_deposit_pass *pass, size_t light, const abb
   abbe_result result = ABBE_OK;
   if (m.whole) result = abbe_splat_sums_add(&sums, &source, entry, goes_on, gpu, error);
   abbe_gpu_unmap(&m);
-  abbe_photon_ledger_enter(pass->trace->ledger, entry);
+  const int64_t entries[ABBE_LEDGER_ENTRIES] = {[ABBE_LEDGER_INTERPOLATED] = entry[0],
+                                                [ABBE_LEDGER_ABSORBED] = entry[1],
+                                                [ABBE_LEDGER_MISSED] = entry[2]};
+  abbe_photon_ledger_enter(pass->trace->ledger, entries);
   return result == ABBE_OK ? abbe_gl_check(gpu->gl, "the deposit of photons", error) : result;
 }
 

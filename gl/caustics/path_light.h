@@ -82,7 +82,7 @@ typedef struct path_nodes {
 
 /* A path whose light is laid; node 0 is `node_first`. signature: 0: none. */
 typedef struct photon_path {
-  const abbe_path_photon *photon;
+  const abbe_photon *photon;
   size_t order, hit_first, coarse_first, rows;
   int node_first, node_last, middle_twice, interval_last, intervals;
   uint32_t refined, signature;

@@ -17,11 +17,6 @@ typedef struct reference {
   int tile;
 } reference;
 
-static float from_snorm(uint32_t word, int half) {
-  const int16_t bits = (int16_t)(word >> 16 * half & 0xffffu);
-  return most((float)bits / 32767.0f, -1);
-}
-
 /* Hits of paths, in the middle, and of the photons beside theirs: to the right, left, above and
  * below. per_apart: cells by which that is apart, inverted; 0: there is none. */
 enum { BESIDE = 4 };
@@ -32,15 +27,15 @@ typedef struct path_company {
 } path_company;
 
 /* The photon of a cell beside a photon's, from 1; 0: there is none. */
-static uint32_t slot_beside(const abbe_path_splats *p, const abbe_path_photon *photon, int i) {
+static uint32_t slot_beside(const abbe_path_splats *p, const abbe_photon *photon, int i) {
   const int x = (int)(photon->cell & 0xffffu) + beside[i][0],
             y = (int)(photon->cell >> 16) + beside[i][1];
   const bool there = x >= 0 && y >= 0 && x < p->grid[0] && y < p->grid[1];
   return there ? p->photon_of_cell[y * p->grid[0] + x] : 0;
 }
 
-static void find_company(const abbe_path_splats *p, const abbe_path_photon *photon,
-                         const reference *r, size_t own, int k, path_company *to) {
+static void find_company(const abbe_path_splats *p, const abbe_photon *photon, const reference *r,
+                         size_t own, int k, path_company *to) {
   const float *at = p->hits[2 * own];
   for (int j = 0; j < 3; j++) to->place[BESIDE][j][k] = at[j];
   to->tile[k] = r->tile;
@@ -53,8 +48,8 @@ static void find_company(const abbe_path_splats *p, const abbe_path_photon *phot
     const bool there = slot != 0 && signature_at(p, p->signatures, other) == r->signature;
     const uint32_t offset = there ? p->photons[slot - 1].offset : photon->offset;
     const float x = (float)beside[i][0], y = (float)beside[i][1];
-    const float along_x = x + from_snorm(offset, 0) - from_snorm(photon->offset, 0);
-    const float along_y = y + from_snorm(offset, 1) - from_snorm(photon->offset, 1);
+    const float along_x = x + snorm_of(offset, 0) - snorm_of(photon->offset, 0);
+    const float along_y = y + snorm_of(offset, 1) - snorm_of(photon->offset, 1);
     to->per_apart[i][k] = there ? 1 / most(along_x * x + along_y * y, 0.25f) : 0;
     for (int j = 0; j < 3; j++) to->place[i][j][k] = p->hits[2 * (there ? other : own)][j];
   }

@@ -5,22 +5,16 @@
 #define ABBE_GL_CAUSTICS_PATH_SPLATS_H
 
 #include "gl/caustics/splat_sums.h"
+#include "gl/light/photon_start.h"
 
 enum { ABBE_PATHS = 8 };      /* that are laid side by side */
 enum { ABBE_PATH_TINTS = 3 }; /* stuffs of which a hit says how much its path passed, at most */
-
-/* Photon of photons.glsl. */
-typedef struct abbe_path_photon {
-  uint32_t cell;
-  float flux;
-  uint32_t offset, extent;
-} abbe_path_photon;
 
 /* What photon_deposit.comp reads, by its names. */
 typedef struct abbe_path_splats {
   const float (*hits)[4], (*node_hits)[4], (*intervals)[4], (*tints)[4], (*warp)[4];
   const uint32_t *signatures, *node_signatures, *photon_of_cell, *wants, *pairs, *paths;
-  const abbe_path_photon *photons;
+  const abbe_photon *photons;
   const int *coarse_node; /* the wavelength of each of the coarse set */
   float tile[ABBE_RECEIVER_TILES][ABBE_TILE_FLOATS], view[24]; /* view: the map's */
   size_t count;                                                /* paths */

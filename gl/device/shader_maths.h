@@ -67,6 +67,12 @@ static inline uint32_t bits_of(float x) {
   return bits;
 }
 
+/* unpackSnorm2x16, one of the two. */
+static inline float snorm_of(uint32_t word, int half) {
+  const int16_t bits = (int16_t)(word >> 16 * half & 0xffffu);
+  return most((float)bits / 32767.0f, -1);
+}
+
 /* exp(x) for x of at most 0, to 2e-7 of it, for many side by side. */
 static inline float exponential(float x) {
   const float in = most(x, -87), t = in * 1.44269504f, turn = 12582912; /* 1.5 x 2^23 */

@@ -2,6 +2,7 @@
 
 #include "gl/device/bindings.h"
 #include "gl/paths/camera_paths.h"
+#include "gl/paths/mesh_walk.h"
 #include "gl/scene/spectra/camera_bands.h"
 
 #include <math.h>
@@ -71,13 +72,9 @@ static bool keeps_sights(const abbe_refraction_pass *pass) {
 
 /* What camera_paths.h follows, where a processor would run the shaders. */
 static bool follows_here(const abbe_refraction_pass *pass, const abbe_shader_variant *v) {
-  const abbe_plan *plan = scene_of(pass)->plan;
-  const bool meshes = v->walk && v->hierarchy && !v->spheres && !v->convex && !v->layers;
-  const bool clear = !v->absorbing && !v->band_parts && !v->films && !v->mirrors && !plan->crystals;
   const bool empty = !v->haze && !v->haze_beyond && v->shafts == 0 && !v->environment;
-  return scene_of(pass)->gpu->software && !pass->keeps && !is_coarse(pass) && !refines(pass) &&
-         meshes && clear && empty && v->area_lights == 0 && !v->receiver_hierarchy &&
-         v->receivers > 0 && v->receivers <= MOST_SHEETS;
+  return abbe_walk_serves(scene_of(pass), v) && !pass->keeps && !is_coarse(pass) &&
+         !refines(pass) && empty && v->receivers <= MOST_SHEETS;
 }
 
 /* Rays know how wide they are, and so where what receivers show to the camera will do. */

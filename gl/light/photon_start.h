@@ -1,5 +1,6 @@
 /* photon_start.h: where photons start: cells of each light's grid that may show a refractor, coarse
- * levels first, and of those what is lit. A pass of frames that follow the light, and of the fits. Internal to gl/.
+ * levels first, and of those what is lit. A pass of frames that follow the light, and of the fits.
+ * Internal to gl/.
  */
 #ifndef ABBE_GL_LIGHT_PHOTON_START_H
 #define ABBE_GL_LIGHT_PHOTON_START_H
@@ -23,6 +24,13 @@ void abbe_photon_cells_free(abbe_photon_cells *cells);
 /* Lists those of a grid that the layer of the texture covers: its alpha is above 0. */
 abbe_result abbe_photon_cells_run(abbe_photon_cells *cells, const size_t grid[2], GLuint coverage,
                                   int layer, abbe_error *error);
+
+/* Photon of photons.glsl. */
+typedef struct abbe_photon {
+  uint32_t cell;
+  float flux;
+  uint32_t offset, extent;
+} abbe_photon;
 
 typedef struct abbe_photon_start {
   const abbe_photon_lights *views;

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-enum { WORDS = 12 };
+enum { WORDS = 2 * ABBE_LEDGER_ENTRIES };
 
 abbe_result abbe_photon_ledger_make(const abbe_photon_lights *views, abbe_photon_ledger *out,
                                     abbe_error *error) {
@@ -51,14 +51,14 @@ double abbe_photon_ledger_wide(const GLuint *lo_hi) {
   return ldexp((double)(GLint)lo_hi[1], 32) + lo_hi[0];
 }
 
-void abbe_photon_ledger_enter(const abbe_photon_ledger *ledger, const int64_t entry[3]) {
-  static const size_t place[3] = {5, 2, 4}; /* as photon_deposit.comp has them */
+void abbe_photon_ledger_enter(const abbe_photon_ledger *ledger,
+                              const int64_t entry[ABBE_LEDGER_ENTRIES]) {
   const abbe_gl *gl = ledger->views->scene->gpu->gl;
   uint32_t word[WORDS];
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, ledger->sums);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof word, word);
-  for (size_t k = 0; k < 3; k++) {
-    uint32_t *at = word + 2 * place[k];
+  for (size_t k = 0; k < ABBE_LEDGER_ENTRIES; k++) {
+    uint32_t *at = word + 2 * k;
     const uint64_t sum = (at[0] | (uint64_t)at[1] << 32) + (uint64_t)entry[k];
     at[0] = (uint32_t)sum;
     at[1] = (uint32_t)(sum >> 32);

@@ -24,8 +24,18 @@ void abbe_photon_ledger_bind(const abbe_photon_ledger *ledger);
 double abbe_photon_ledger_unit(const abbe_photon_ledger *ledger, size_t light);
 void abbe_photon_ledger_set(const abbe_photon_ledger *ledger, GLuint program, size_t light);
 
-/* Adds to what is interpolated, absorbed and missed, in units. Waits for the device. */
-void abbe_photon_ledger_enter(const abbe_photon_ledger *ledger, const int64_t entry[3]);
+enum {
+  ABBE_LEDGER_REACHED,
+  ABBE_LEDGER_REFLECTED,
+  ABBE_LEDGER_ABSORBED,
+  ABBE_LEDGER_TRAPPED,
+  ABBE_LEDGER_MISSED,
+  ABBE_LEDGER_INTERPOLATED,
+  ABBE_LEDGER_ENTRIES
+};
+/* Adds so many units. Waits for the device. */
+void abbe_photon_ledger_enter(const abbe_photon_ledger *ledger,
+                              const int64_t entry[ABBE_LEDGER_ENTRIES]);
 
 /* The entries as they are, and back to those. */
 void abbe_photon_ledger_save(const abbe_photon_ledger *ledger);

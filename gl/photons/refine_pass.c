@@ -142,12 +142,7 @@ static void take_chunk(abbe_refine_pass *pass, size_t light, size_t chunk) {
 }
 
 void abbe_refine_pass_run(abbe_refine_pass *pass, size_t light, size_t chunk) {
-  abbe_trace_pass *trace = pass->trace;
-  abbe_gpu *gpu = trace->spectra->scene->gpu;
   take_chunk(pass, light, chunk);
-  abbe_trace_pass_begin(trace, light, ABBE_TRACE_REFINED, &pass->hits, pass->fine_nodes);
-  abbe_gpu_set_uint(gpu, trace->program, "most_pairs", pass->pair_room);
-  abbe_gpu_bind_storage(gpu, BINDING_PAIRS, pass->pairs);
-  abbe_gpu_dispatch_list(gpu, trace->program, pass->pairs, 0, pass->pair_room, pass->fine_nodes);
-  abbe_trace_pass_end(trace, &pass->hits, pass->pair_room);
+  abbe_trace_pass_pairs(pass->trace, light, pass->pairs, pass->pair_room, &pass->hits,
+                        pass->fine_nodes);
 }

@@ -1,6 +1,7 @@
 #include "gl/photons/trace_pass.h"
 
 #include "gl/device/bindings.h"
+#include "gl/photons/photon_paths.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -102,15 +103,19 @@ void abbe_trace_pass_free(abbe_trace_pass *pass) {
 abbe_result abbe_trace_pass_compile(abbe_trace_pass *pass, const abbe_shader_variant *variant,
                                     abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  ABBE_TRY(abbe_shader_variant_compute(variant, gpu, "photon_trace.comp",
-                                       abbe_shader_variant_waves(scene_of(pass)->plan),
-                                       &pass->program, error));
+  pass->here = abbe_photon_paths_serve(pass, variant);
+  if (!pass->here)
+    ABBE_TRY(abbe_shader_variant_compute(variant, gpu, "photon_trace.comp",
+                                         abbe_shader_variant_waves(scene_of(pass)->plan),
+                                         &pass->program, error));
   return abbe_shader_variant_compute(variant, gpu, "photon_paths.comp", NULL, &pass->list_paths,
                                      error);
 }
 
-void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set set,
-                           const abbe_hits *hits, size_t count) {
+/* The program is in use, everything is bound and lists are cleared; what runs it then dispatches.
+ */
+static void begin(abbe_trace_pass *pass, size_t light, abbe_trace_set set, const abbe_hits *hits,
+                  size_t count) {
   const abbe_gpu_scene *scene = scene_of(pass);
   abbe_gpu *gpu = scene->gpu;
   const GLuint program = pass->program;
@@ -151,29 +156,46 @@ static size_t groups_of(size_t threads) {
   return (threads + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
 }
 
-void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t items) {
+/* Lists the paths of so many photons or intervals that hit anywhere. */
+static void list_paths(abbe_trace_pass *pass, const abbe_hits *hits, size_t items) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const size_t paths = items * scene_of(pass)->plan->hit_slots;
   if (paths == 0) return;
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   gpu->gl->UseProgram(pass->list_paths);
   abbe_gpu_set_uint(gpu, pass->list_paths, "items", items);
+  abbe_gpu_bind_storage(gpu, BINDING_PATH_MARKS, hits->marks);
   abbe_gpu_bind_storage(gpu, BINDING_PATHS, hits->paths);
   abbe_gpu_dispatch(gpu, pass->list_paths, groups_of(paths));
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
                          GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
+static bool follow_here(abbe_trace_pass *pass, const abbe_photon_batch *batch,
+                        const abbe_hits *hits, size_t items) {
+  if (!pass->here) return false;
+  abbe_photon_paths_follow(pass, batch, hits);
+  abbe_gpu_clear_list(scene_of(pass)->gpu, hits->paths);
+  list_paths(pass, hits, items);
+  return true;
+}
+
 static void trace_batch(abbe_trace_pass *pass, size_t light, size_t first, size_t count,
                         size_t ledger_first, bool ways) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const size_t photons = pass->start->views->light[light].photon_count;
-  abbe_trace_pass_begin(pass, light, ABBE_TRACE_ALL, &pass->hits, count);
+  const abbe_photon_batch batch = {.light = light,
+                                   .set = ABBE_TRACE_ALL,
+                                   .sample_first = first,
+                                   .sample_count = count,
+                                   .ledger_first = ledger_first};
+  if (follow_here(pass, &batch, &pass->hits, photons)) return;
+  begin(pass, light, ABBE_TRACE_ALL, &pass->hits, count);
   if (ways) abbe_gpu_set_int(gpu, pass->program, "ways", 1);
   abbe_gpu_set_int(gpu, pass->program, "sample_first", (int)first);
   abbe_gpu_set_int(gpu, pass->program, "ledger_first", (int)ledger_first);
   abbe_gpu_dispatch(gpu, pass->program, groups_of(photons * count));
-  abbe_trace_pass_end(pass, &pass->hits, photons);
+  list_paths(pass, &pass->hits, photons);
 }
 
 void abbe_trace_pass_batch(abbe_trace_pass *pass, size_t light, size_t first, size_t count,
@@ -187,9 +209,28 @@ void abbe_trace_pass_ways(abbe_trace_pass *pass, size_t light, size_t first, siz
 
 void abbe_trace_pass_coarse(abbe_trace_pass *pass, size_t light) {
   const size_t photons = pass->start->views->light[light].photon_count;
-  abbe_trace_pass_begin(pass, light, ABBE_TRACE_COARSE, &pass->hits, pass->spectra->nodes);
+  const abbe_photon_batch batch = {
+      .light = light, .set = ABBE_TRACE_COARSE, .sample_count = pass->spectra->nodes};
+  if (follow_here(pass, &batch, &pass->hits, photons)) return;
+  begin(pass, light, ABBE_TRACE_COARSE, &pass->hits, pass->spectra->nodes);
   abbe_gpu_dispatch(scene_of(pass)->gpu, pass->program, groups_of(photons * pass->spectra->nodes));
-  abbe_trace_pass_end(pass, &pass->hits, photons);
+  list_paths(pass, &pass->hits, photons);
+}
+
+void abbe_trace_pass_pairs(abbe_trace_pass *pass, size_t light, GLuint pairs, size_t most_pairs,
+                           const abbe_hits *hits, size_t count) {
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  const abbe_photon_batch batch = {.light = light,
+                                   .set = ABBE_TRACE_REFINED,
+                                   .sample_count = count,
+                                   .pairs = pairs,
+                                   .most_pairs = most_pairs};
+  if (follow_here(pass, &batch, hits, most_pairs)) return;
+  begin(pass, light, ABBE_TRACE_REFINED, hits, count);
+  abbe_gpu_set_uint(gpu, pass->program, "most_pairs", most_pairs);
+  abbe_gpu_bind_storage(gpu, BINDING_PAIRS, pairs);
+  abbe_gpu_dispatch_list(gpu, pass->program, pairs, 0, most_pairs, count);
+  list_paths(pass, hits, most_pairs);
 }
 
 size_t abbe_trace_pass_hit_count(const abbe_trace_pass *pass, size_t light) {

@@ -34,6 +34,7 @@ typedef struct abbe_trace_pass {
   const abbe_receiver_atlas *atlas;
   abbe_photon_ledger *ledger;
   GLuint program, list_paths;
+  bool here; /* the processor's own threads follow photons, and there is no program */
   abbe_hits hits;
   size_t most_photons; /* the capacity */
 } abbe_trace_pass;
@@ -63,12 +64,9 @@ void abbe_trace_pass_batch(abbe_trace_pass *pass, size_t light, size_t first, si
 void abbe_trace_pass_ways(abbe_trace_pass *pass, size_t light, size_t first, size_t count);
 void abbe_trace_pass_coarse(abbe_trace_pass *pass, size_t light);
 
-/* The program is in use, everything is bound and lists are cleared; what runs it then dispatches.
- */
-void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set set,
+/* All wavelengths of listed intervals, at most so many; each has at most `count`. */
+void abbe_trace_pass_pairs(abbe_trace_pass *pass, size_t light, GLuint pairs, size_t most_pairs,
                            const abbe_hits *hits, size_t count);
-/* Lists the paths of so many photons or intervals that hit anywhere. */
-void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t items);
 
 /* The hits of the last batch, from wavelength `first` on:
  * [photons][slots][stride] x 4 floats, place (on tiles: texels and number) and flux of unit power

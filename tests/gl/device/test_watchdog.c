@@ -4,10 +4,11 @@
 #include "tests/gl/frame.h"
 
 #include "gl/device/gpu.h"
+#include "gl/photons/photon_paths.h"
 
 enum { MOST = 8, THREADS = MOST * ABBE_GPU_GROUP, TILE = 64 * 64 };
 
-static bool as_gpu, cut, scissored;
+static bool as_gpu, cut, scissored, photons_by_device;
 static abbe_gl real;
 static size_t dispatches, most_seen;
 static size_t viewport, scissor; /* texels */
@@ -102,6 +103,12 @@ abbe_result __wrap_abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *e
   return result;
 }
 
+bool __real_abbe_photon_paths_serve(const abbe_trace_pass *pass, const abbe_shader_variant *v);
+bool __wrap_abbe_photon_paths_serve(const abbe_trace_pass *pass, const abbe_shader_variant *v);
+bool __wrap_abbe_photon_paths_serve(const abbe_trace_pass *pass, const abbe_shader_variant *v) {
+  return !photons_by_device && __real_abbe_photon_paths_serve(pass, v);
+}
+
 static void draw(const char *file, abbe_image *picture, abbe_image *map) {
   MADE(abbe_scene, scene,
        abbe_scene_load(printed(ABBE_SOURCE_DIR "/scenes/%s.yaml", file), NULL, &scene, &error));
@@ -178,6 +185,7 @@ TEST(processor_and_device_lay_and_see_the_same_light) {
     for (int k = 0; k < 2; k++) {
       cut = false;
       as_gpu = k == 1;
+      photons_by_device = true; /* so that all have the same hits */
       make_context();
       draw(files[i], &picture[k], &map[k]);
       free_context();
@@ -191,4 +199,79 @@ TEST(processor_and_device_lay_and_see_the_same_light) {
       abbe_image_free(&map[k]);
     }
   }
+}
+
+typedef struct photons {
+  abbe_renderer_hits hits;
+  abbe_ledger ledger;
+  abbe_image map;
+} photons;
+
+/* layout: of the map; given where it is not all zero. */
+static void follow(const char *file, abbe_map_layout *layout, photons *out) {
+  static const abbe_map_layout unknown;
+  const bool given = memcmp(layout, &unknown, sizeof unknown) != 0;
+  OWNED(abbe_scene, scene) = shipped_scene(file);
+  look_aside(&scene);
+  abbe_render_desc desc = frame;
+  desc.map_layout = given ? layout : NULL;
+  HELD(abbe_renderer, renderer) = make_renderer(&scene, &desc);
+  out->ledger = draw_frame(renderer).energy;
+  out->map = map_of(renderer, 0);
+  if (!given) abbe_renderer_map_layout(renderer, 0, layout);
+  OK(abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, &out->hits, &error));
+}
+
+/* Hits of a photon in both, and those that lie apart or have another flux. */
+static void compare_photon(const float *a, const float *b, const unsigned *paths_a,
+                           const unsigned *paths_b, size_t count, size_t *all, size_t *odd) {
+  for (size_t i = 0; i < count; i++, a += 4, b += 4) {
+    double apart = 0;
+    for (int k = 0; k < 3; k++) apart = fmax(apart, fabs((double)a[k] - (double)b[k]));
+    *all += paths_b[i] != 0;
+    *odd += paths_a[i] != paths_b[i] || apart > 1e-4 || /* m, or texels of a tile */
+            fabs((double)a[3] - (double)b[3]) > 1e-3 * (double)b[3];
+  }
+}
+
+/* Photons of clear meshes that the processor's own threads follow (photon_paths.h) land where
+ * photon_trace.comp has them, but for those whose rounding many interfaces magnify. */
+TEST(processor_and_device_follow_the_same_photons) {
+  static const char *const files[] = {"glass", "ring"};
+  as_gpu = cut = false;
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    abbe_map_layout layout = {0};
+    photons of[2] = {{.map = {0}}, {.map = {0}}};
+    for (int k = 0; k < 2; k++) {
+      photons_by_device = k == 0;
+      make_context();
+      follow(files[i], &layout, &of[k]);
+      free_context();
+    }
+    const abbe_renderer_hits *here = &of[1].hits, *there = &of[0].hits;
+    const size_t each = here->slots * here->samples;
+    size_t all = 0, odd = 0;
+    assert_int_equal(here->count, there->count);
+    assert_memory_equal(here->grid, there->grid, sizeof here->grid);
+    for (size_t p = 0; p < here->count; p++) {
+      size_t q = 0;
+      while (q < there->count && there->cell[q] != here->cell[p]) q++;
+      assert_true(q < there->count);
+      compare_photon(here->at + 4 * each * p, there->at + 4 * each * q, here->path + each * p,
+                     there->path + each * q, each, &all, &odd);
+    }
+    const double light = apart_by((abbe_image[2]){of[1].map, of[0].map});
+    print_message("%s: %zu of %zu hits differ, apart by %g of the light\n", files[i], odd, all,
+                  light);
+    assert_true(all > here->count && odd * 200 < all);
+    assert_near(light, 0, 1e-3);
+    assert_near(of[1].ledger.reached / of[0].ledger.reached, 1, 1e-5);
+    assert_near(of[1].ledger.missed / of[0].ledger.missed, 1, 1e-4);
+    assert_near(of[1].ledger.trapped / of[0].ledger.trapped, 1, 1e-3);
+    for (int k = 0; k < 2; k++) {
+      abbe_renderer_hits_free(&of[k].hits);
+      abbe_image_free(&of[k].map);
+    }
+  }
+  photons_by_device = false;
 }
