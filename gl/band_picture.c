@@ -29,7 +29,7 @@ static double density(const abbe_illuminant *light, const double range_nm[2],
          (band_nm[1] - band_nm[0]);
 }
 
-/* Of lines all stay, as the band has an end; each has its own height. */
+/* All lines stay, as the band has an end; each has its own height. */
 static abbe_result flatten_lines(const abbe_illuminant *light, abbe_illuminant *out,
                                  abbe_error *error) {
   const abbe_spectrum *s = light->spectrum;

@@ -32,7 +32,7 @@ typedef struct abbe_film_layer {
 
 enum { ABBE_FILM_S, ABBE_FILM_P };
 
-/* Of s and p. What is neither reflected nor transmitted is absorbed. */
+/* For s and p. What is neither reflected nor transmitted is absorbed. */
 typedef struct abbe_film_light {
   double reflected[2], transmitted[2]; /* shares */
   double r[2][2];                      /* amplitude, real and imaginary part; of p by the magnetic

@@ -143,7 +143,7 @@ static void print_main_angles(const abbe_gem_input *in) {
   if (before[0] == ';') printf("\n");
 }
 
-/* Of a block of the rough's size, as large as it goes in. */
+/* The largest stone that a block of the rough's size holds. */
 static void print_yield(const abbe_gem_input *in) {
   const abbe_cut_measures *m = &in->measures;
   const double *r = in->rough_m, unit = abbe_cut_measures_fit(m, r), mm = 1e3 * unit,

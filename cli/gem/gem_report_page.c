@@ -306,7 +306,7 @@ static const struct {
 };
 enum { TOLD = sizeof told / sizeof *told };
 
-/* Of the ideal, as far as it is known without rocking it. */
+/* The ideal's numbers, as far as they are known without rocking it. */
 static bool find_number(const abbe_gem_view *v, const char *name, abbe_gem_number *out) {
   abbe_gem_areas areas;
   if (v->side == 0 || abbe_gem_view_areas(v, &areas, NULL) != ABBE_OK) return false;

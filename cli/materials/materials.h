@@ -77,7 +77,7 @@ void abbe_materials_add_absorption(cJSON *to, const abbe_material *material);
 const char *abbe_materials_loss_columns(const abbe_material *material);
 void abbe_materials_print_losses(const abbe_material *material, double lambda_nm);
 void abbe_materials_add_losses(cJSON *to, const abbe_material *material, double lambda_nm);
-/* Of a biaxial crystal, at d: its three indices and the angle of its optic axes about z. */
+/* For a biaxial crystal, at d: its three indices and the angle of its optic axes about z. */
 void abbe_materials_show_biaxial(const abbe_material *material);
 void abbe_materials_add_biaxial(cJSON *to, const abbe_material *material);
 /* Adds text, or null where there is none. */

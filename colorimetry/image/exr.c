@@ -236,7 +236,7 @@ static exr_result_t find_lines(abbe_exr_reader *r) {
   return EXR_ERR_SUCCESS;
 }
 
-/* Of what is there each further pass reads the chunks in the middle between. */
+/* Each further pass reads the chunks in the middle between those that were read. */
 static void advance(abbe_exr_reader *r) {
   r->next += r->again ? 2 * r->step : r->step;
   while (r->next >= r->chunks && r->step > 1) {

@@ -40,7 +40,7 @@ static const struct {
 };
 enum { INTEROP = sizeof interop / sizeof *interop };
 
-/* Of an ID, or of what is left of it without namespaces; NULL of none that is known. */
+/* Takes an ID, or what is left of it without namespaces; NULL where it is not known. */
 static const double *interop_xy(const char *id) {
   for (; id != NULL; id = strchr(id, ':') != NULL ? strchr(id, ':') + 1 : NULL)
     for (size_t i = 0; i < INTEROP; i++)
@@ -135,7 +135,7 @@ static void cubehelix(double t, double rgb[3]) {
   rgb[2] = t + 1.97294 * c;
 }
 
-/* Of CIELAB's f where it is above 6/29, as all of this map is. */
+/* Inverts CIELAB's f where it is above 6/29, as all of this map is. */
 static double from_lab(double f) {
   return f * f * f;
 }

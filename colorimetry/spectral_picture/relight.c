@@ -117,7 +117,7 @@ static void fill(const abbe_image *image, const abbe_spectral_channels *c,
   }
 }
 
-/* Of a file what is asked for alone is held, but for infinities, which need to be known before. */
+/* A file's channels are held only where asked for, but infinities need to be known before. */
 static abbe_result fill_from(const abbe_image *image, const abbe_spectral_channels *c,
                              const abbe_relight_desc *d, const double (*weight)[3],
                              const double *factor, abbe_image *out, abbe_error *error) {

@@ -218,7 +218,7 @@ void abbe_gpu_haze_set(const abbe_gpu_scene *scene, GLuint program);
 size_t abbe_gpu_surfaces_reflections(const abbe_gpu_scene *scene);
 abbe_result abbe_gpu_surfaces_upload(abbe_gpu_scene *scene, abbe_error *error);
 
-/* Of one material, and a crystal's axes lie alike: else there is a face between them. */
+/* One material, and a crystal's axes lie alike: else there is a face between them. */
 bool abbe_gpu_scene_same_stuff(const abbe_object *a, const abbe_object *b);
 
 /* gpu_bvh.c: the triangles of what is traversed. */

@@ -133,7 +133,7 @@ Depth wave_attenuation(Crystal c, int r, int wave, vec3 k);
 #ifdef PLEOCHROIC
 bool in_crystal(uint inside);
 
-// Of glass there is no wave, whose field its axes could share.
+// Glass has no wave, whose field its axes could share.
 void absorb_wave(inout PathState w, int r, float metres) {
 #ifdef KEEPS_TINTS
   vec3 amount = metres * axis_shares(crystal_of(r), w.wave, w.k);

@@ -30,7 +30,7 @@ const char *abbe_picture_tool_name(abbe_picture_tool tool);
 #define ABBE_PICTURE_YARDSTICK_PASSES 2
 #define ABBE_PICTURE_YARDSTICK_PHOTONS 128
 
-/* Of one tool. */
+/* One tool's point. */
 typedef struct abbe_picture_point {
   abbe_picture_tool tool;
   size_t photons; /* a side */
@@ -125,13 +125,13 @@ abbe_render_desc abbe_picture_point_desc(const abbe_picture_point *point);
 /* "the renderer: 7 wavelengths, ..." or "the tracer: 4 passes of 262144 photons, filtered". */
 void abbe_picture_describe(const abbe_picture_point *point, char *out, size_t size);
 
-/* Of many costs and errors, those that no other beats in both; and what to pick of them.
+/* Among costs and errors, those that no other beats in both; and what to pick of them.
  *
  * The Pareto front of settings that cost time and make errors. It knows no settings: arrays in,
  * flags and indices out. A cost or an error that is not finite, and a cost that is not positive,
  * is not on the front. */
 
-/* Of count points those that no other beats, as indices in the order of cost (and so of falling
+/* Finds the points that no other beats, as indices in the order of cost (and so of falling
  * error): none has at most their cost and at most their error, and less of one. Of equal points it
  * is the first. Returns how many; order[count] has room. */
 size_t abbe_pareto_front_order(const double *cost, const double *error, size_t count,

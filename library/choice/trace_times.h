@@ -13,7 +13,7 @@
 
 #include <stdbool.h>
 
-/* Of all pictures that are timed; references have other noise. */
+/* The seed of all pictures that are timed; references have other noise. */
 #define ABBE_TRACE_TIMES_SEED 20261u
 
 typedef struct abbe_trace_times_desc {

@@ -311,7 +311,7 @@ static abbe_result read_wave(reading *r, abbe_film_table *t, size_t i, size_t k)
   return ABBE_OK;
 }
 
-/* Of a COATING.DAT: ANGL and degrees, then its lines of WAVE. Phases are passed over. */
+/* In a COATING.DAT: ANGL and degrees, then its lines of WAVE. Phases are passed over. */
 static abbe_result read_table(reading *r, abbe_coating *out) {
   size_t angles = 0, waves = 0, i = 0, k = 0;
   reading ahead = *r;

@@ -108,7 +108,7 @@ static abbe_result work_make(const abbe_cut *cut, const abbe_cut_polyhedron *p, 
 
 /* ---- equations ---- */
 
-/* Of n by the angle, and of d by the distance: the rest is 0. */
+/* Derivatives of n by the angle, and of d by the distance: the rest is 0. */
 static void lean(const abbe_cut_facet *f, double by[3]) {
   const double side = hypot(f->n[0], f->n[1]), up = fabs(f->n[2]);
   for (int k = 0; k < 2; k++) by[k] = side > 0 ? f->n[k] / side * up : 0;

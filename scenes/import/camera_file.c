@@ -68,12 +68,12 @@ static abbe_result read_lens(abbe_yaml *yaml, abbe_yaml_node node, double *focal
   return ABBE_OK;
 }
 
-/* Of a thin lens that is sharp at that distance: the film is as far behind it as it is then. */
+/* A thin lens is sharp at that distance: the film is as far behind it as it is then. */
 static double lens_angle(double focal, double distance) {
   return 2 * atan(0.5 * FILM_M * (distance - focal) / (focal * distance));
 }
 
-/* Of a pinhole there is nothing to read but that 'focus' needs an aperture. */
+/* A pinhole has nothing to read but that 'focus' needs an aperture. */
 static abbe_result read_aperture(abbe_yaml *yaml, abbe_yaml_node node, double *number,
                                  abbe_error *error) {
   const abbe_yaml_node focus = abbe_yaml_get(yaml, node, "focus");

@@ -298,7 +298,8 @@ static bool same_points(const triple *a, const triple *b) {
   return memcmp(a->point, b->point, sizeof a->point) == 0;
 }
 
-/* Of faces on the same points one stays of either side that they show; *doubles counts the rest. */
+/* Where faces have the same points, one stays of either side that they show; *doubles counts the
+ * rest. */
 static void mark(const triple *all, size_t count, bool *dropped, size_t *doubles) {
   for (size_t from = 0, to; from < count; from = to) {
     bool shown[2] = {false, false};

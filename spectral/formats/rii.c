@@ -130,7 +130,7 @@ static abbe_result read_formula(reader *r, abbe_yaml_node entry, int number) {
 
 /* ---- tables ---- */
 
-/* Of a table's lines: how many numbers each has, and which are taken. */
+/* A table's lines: how many numbers each has, and which are taken. */
 typedef struct columns {
   bool n, k;
   int numbers;

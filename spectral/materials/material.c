@@ -146,7 +146,7 @@ static abbe_result check_index(const abbe_material *m, abbe_error *error) {
   return abbe_material_is_crystal(m) ? check_order(m, error) : ABBE_OK;
 }
 
-/* Of three indices, all are there and real, and there is no second of another kind. */
+/* All of three indices are there and real, and there is no second of another kind. */
 static abbe_result check_outer(const abbe_material *m, abbe_error *error) {
   abbe_error why;
   if (!abbe_material_is_biaxial(m)) return ABBE_OK;

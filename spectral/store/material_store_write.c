@@ -181,7 +181,7 @@ static int bind_material(sqlite3_stmt *q, const abbe_material *m) {
 
 /* ---- a file row by row ---- */
 
-/* Of a file without a name, so that nothing is left of it wherever the program ends. */
+/* A file without a name, so that nothing is left of it wherever the program ends. */
 struct abbe_material_store_maker {
   sqlite3 *db;
   sqlite3_stmt *insert;

@@ -191,7 +191,7 @@ static bool find_triple(const abbe_image *image, size_t first, size_t channel[3]
   return true;
 }
 
-/* Of the triple that begins with that channel. */
+/* The space of the triple that begins with that channel. */
 static abbe_result find_space(const abbe_inspect_picture *p, size_t first, abbe_picture_space *out,
                               abbe_error *error) {
   const char *own = p->image.channel[first];

@@ -77,7 +77,7 @@ static void count_bins(abbe_inspect_picture *p, const float *sorted, size_t coun
   }
 }
 
-/* Of pixels evenly taken, at most SAMPLES. */
+/* Takes at most SAMPLES pixels, evenly. */
 static abbe_result measure(const abbe_inspect *s, abbe_inspect_picture *p, abbe_error *error) {
   const bool colour = is_colour(s);
   const size_t coarse = ABBE_INSPECT_LEVELS; /* what is in memory is enough */

@@ -71,7 +71,7 @@ static bool is_even(const abbe_scene *scene, const abbe_plan *plan, size_t r) {
   return (float)least == (float)most;
 }
 
-/* Of two indices x and y are alike. */
+/* In a crystal of two indices x and y are alike. */
 static int tint_along(const abbe_scene *scene, const abbe_plan *plan, size_t r, size_t axis) {
   const abbe_object *object = object_of(scene, plan, r);
   if (axis == 1 && object->material->attenuation_yz[0] == NULL) axis = 0;

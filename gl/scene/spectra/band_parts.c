@@ -61,7 +61,7 @@ void abbe_band_steps_free(abbe_band_steps *steps) {
   *steps = (abbe_band_steps){0};
 }
 
-/* Of surface s of the steps, at a wavelength. */
+/* What surface s of the steps does at a wavelength. */
 static abbe_result depth_of(const abbe_scene *scene, const abbe_plan *plan, size_t s, double path_m,
                             double lambda_nm, double *out, abbe_error *error) {
   const size_t r = s % plan->refractor_count, axes = s / plan->refractor_count;

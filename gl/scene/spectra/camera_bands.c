@@ -303,7 +303,7 @@ static abbe_result join_crystal(const band_set *s, const abbe_scene *scene, cons
   return ABBE_OK;
 }
 
-/* Of glass any axes will do, and of two indices any x. */
+/* Glass takes any axes, and a crystal of two indices any x. */
 static void place_axes(const abbe_scene *scene, const abbe_plan *plan, float (*texel)[4]) {
   static const double up[3] = {0, 0, 1};
   for (size_t r = 0; r < plan->refractor_count; r++) {

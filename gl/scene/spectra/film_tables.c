@@ -32,7 +32,7 @@ static bool is_crystal(const abbe_scene *scene, const abbe_plan *plan, size_t r)
   return plan->crystals && m != NULL && abbe_material_is_crystal(m);
 }
 
-/* Of the outer indices the one that is farther from that of glass's tables. */
+/* The outer index that is farther from that of glass's tables. */
 static int other_axis(const abbe_material *material, double lambda_nm) {
   double n[3] = {0};
   for (int k = 0; k < 3; k++) abbe_material_n_along(material, k, lambda_nm, &n[k], NULL);

@@ -12,7 +12,7 @@ static const double first_nm = 440, last_nm = 640; /* the range */
 static const char reason[] = "as improbable as four standard errors, taken from the spread of the "
                              "passes; and 3e-3 of the value, for the steps of wavelengths";
 
-/* Of a record that is excited alike at all wavelengths below its emission, a triangle. */
+/* A record that is excited alike at all wavelengths below its emission, a triangle. */
 typedef struct glowing {
   abbe_material material;
   double excitation, absorption; /* 1/m; the latter of its own glow */

@@ -32,7 +32,7 @@ static void choose(const abbe_glow *g, const abbe_media *media, int i) {
   for (size_t k = 0; sum > 0 && k <= g->steps; k++) to[k] /= (float)sum;
 }
 
-/* Of what excites it in each step, which rows of the matrix emit and how much. */
+/* Which rows of the matrix emit, and how much, of what excites it in each step. */
 static void fill_rows(const abbe_glow *g, const abbe_material *m, size_t i, size_t first) {
   const double *nm = g->sampling->lambda_nm;
   const size_t rows = abbe_material_glow_rows(m);

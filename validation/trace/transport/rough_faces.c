@@ -74,7 +74,7 @@ static bool between_crystals(const between *b) {
          abbe_media_is_crystal(b->m, b->face.to);
 }
 
-/* Of glass: the share that the facet reflects, the ratio of indices, and what a film leaves. */
+/* For glass: the share that the facet reflects, the ratio of indices, and what a film leaves. */
 static float reflectance(const between *b, float cos_i, float *eta, float *cos_t, float *passes) {
   const float n[2] = {abbe_media_n(b->m, b->face.from, b->step, b->within),
                       abbe_media_n(b->m, b->face.to, b->step, b->within)};

@@ -137,7 +137,7 @@ static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, abb
   return ++s->steps >= ABBE_INNER_MAX_STEPS ? LOST : left ? SCATTERS : NOT_COUNTED;
 }
 
-/* Of a path at an interface that is lane k's. */
+/* Whether lane k's path splits at its interface. */
 static bool is_split(const abbe_light_walk *w, const packet *p, size_t k,
                      const abbe_light_path *s) {
   return !(p->rough[k] > 0) && s->steps <= ABBE_PHOTON_SPLITS &&
