@@ -65,12 +65,15 @@ abbe_label(program NAMES thesis_pictures)
 
 add_test(NAME full_disk_command
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/full_disk $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
+add_test(NAME killed_writers
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/full_disk $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
+    $<TARGET_FILE:faults_preload>)
 add_test(NAME killed_parts
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/killed_parts $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
 add_test(NAME distributed_page
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
     docs/distributed.md)
-abbe_label(program NAMES full_disk_command killed_parts distributed_page)
+abbe_label(program NAMES full_disk_command killed_writers killed_parts distributed_page)
 add_test(NAME gems_page
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
     docs/gems.md)

@@ -143,8 +143,9 @@ int film_on(int r, int facet) {
 // What it reflects, and what it passes, of light that comes to a refractor of index n from outside, or from inside.
 vec2 film_shares(int film, bool outside, float cos_i, float n) {
   float c = clamp(cos_i, 0.0, 1.0), in_air = outside ? c * c : cos2_refracted(c, n);
-  float beyond2 = clamp(-in_air / ((n - 1.0) * (n + 1.0)), 0.0, 1.0);  // of total reflection
-  float x = float(FILM_ANGLES) * (1.0 + (in_air > 0.0 ? sqrt(min(in_air, 1.0)) : -sqrt(beyond2) / (1.0 + sqrt(1.0 - beyond2))));
+  float deep = (n - 1.0) * (n + 1.0), beyond = sqrt(clamp(-in_air / deep, 0.0, 1.0));  // of total reflection
+  float rest = min(n * c * inversesqrt(deep), 1.0);                                    // root of 1 less its square
+  float x = float(FILM_ANGLES) * (1.0 + (in_air > 0.0 ? sqrt(min(in_air, 1.0)) : -beyond / (1.0 + rest)));
   int at = clamp(int(x), 0, 2 * FILM_ANGLES - 1);
   int row = film * (counts.wavelengths + BAND_SETS * counts.bands) + film_row;
   int texel = REFRACTORS + PLANE_ROOM + row * (2 * FILM_ANGLES + 1) + at;

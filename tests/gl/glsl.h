@@ -12,6 +12,8 @@
 #include "gl/device/program.h"
 #include "gl/scene/gpu_scene.h"
 
+#include <time.h>
+
 /* A bound buffer of that target: GL_SHADER_STORAGE_BUFFER or GL_UNIFORM_BUFFER. */
 static inline GLuint glsl_bind(const abbe_gl *gl, GLenum target, GLuint binding, size_t size,
                                const void *data) {
@@ -84,6 +86,21 @@ static inline void glsl_run(const abbe_gl *gl, GLuint program, const float (*in)
   gl->DeleteBuffers(1, &inputs);
   gl->DeleteBuffers(1, &outputs);
   OK(abbe_gl_check(gl, "the harness", &error));
+}
+
+/* Of all threads, whatever else the machine does. */
+static inline double glsl_processor_ns(void) {
+  return 1e9 * (double)clock() / CLOCKS_PER_SEC;
+}
+
+/* As glsl_run: ns of processor for each input, with the way there and back, once the program is at
+ * work. */
+static inline double glsl_time(const abbe_gl *gl, GLuint program, const float (*in)[8],
+                               size_t count, float (*out)[4]) {
+  glsl_run(gl, program, in, count, out);
+  const double from = glsl_processor_ns();
+  glsl_run(gl, program, in, count, out);
+  return (glsl_processor_ns() - from) / (double)count;
 }
 
 static inline void glsl_evaluate(const abbe_gl *gl, const char *text, const float (*in)[8],

@@ -8,7 +8,9 @@
 #include "tests/gl/glsl.h"
 #include "tests/random.h"
 
+#include "base/maths.h"
 #include "gl/device/shader_maths.h"
+#include "gl/scene/spectra/camera_bands.h"
 #include "spectral/microfacets.h"
 #include "spectral/optics.h"
 
@@ -120,6 +122,39 @@ static void lobe(const double x[8], double out[4]) {
   out[3] = abbe_microfacets_density(&m, x);
 }
 
+/* A film's shares by the angle, as its tables have them: what is looked up is nearly that. */
+static double film_share(int angle, int share) {
+  return (double)(float)(0.5 + 0.45 * sin(0.06 * angle + 2 * share));
+}
+
+static void bind_film(const abbe_gl *gl) {
+  static float texel[2 + 2 * ABBE_FILM_ANGLES + 1][4]; /* behind a refractor and a plane */
+  for (int i = 0; i <= 2 * ABBE_FILM_ANGLES; i++)
+    for (int k = 0; k < 3; k++) texel[2 + i][k] = (float)film_share(i, k);
+  glsl_texels(gl, UNIT_FILMS, GL_RGBA32F, sizeof texel, texel);
+}
+
+/* a = (cosine, n, from outside): straddling total reflection from inside. */
+static void draw_film(int i, float in[8]) {
+  const double n = i % 3 ? exp(random_between(&state, 0.05, 1)) : indices[7 + i / 3 % 8];
+  in[1] = (float)n;
+  in[2] = i % 2 ? 1 : 0;
+  in[0] = (float)(i % 5 ? random_between(&state, 0, 1) : cosine(i / 5 % COSINES, n));
+}
+
+static void film(const double x[8], double out[4]) {
+  const double c2 = x[0] * x[0], n2 = x[1] * x[1];
+  const double in_air = x[2] > 0.5 ? c2 : (1 - n2) + n2 * c2;
+  const double beyond = fmin(fmax(-in_air / (n2 - 1), 0), 1);
+  const double at = ABBE_FILM_ANGLES * (1 + (in_air > 0 ? sqrt(fmin(in_air, 1))
+                                                        : -sqrt(beyond) / (1 + sqrt(1 - beyond))));
+  const int i = (int)fmin(fmax(floor(at), 0), 2 * ABBE_FILM_ANGLES - 1);
+  for (int k = 0; k < 2; k++) {
+    const int share = k == 1 ? 2 : x[2] > 0.5 ? 0 : 1;
+    out[k] = film_share(i, share) + (at - i) * (film_share(i + 1, share) - film_share(i, share));
+  }
+}
+
 typedef struct kernel {
   const char *name, *text;
   void (*draw)(int i, float in[8]);
@@ -161,10 +196,24 @@ static double ulps_off(const kernel *k, const float in[8], const float out[4]) {
   return worst;
 }
 
+/* ns of one. */
+static double time_twin(const kernel *k) {
+  double x[8], out[4] = {0}, sum = 0;
+  const double from = glsl_processor_ns();
+  for (int i = 0; i < CASES; i++) {
+    for (int j = 0; j < 8; j++) x[j] = (double)inputs[i][j];
+    k->twin(x, out);
+    sum += out[0];
+  }
+  const double took = glsl_processor_ns() - from;
+  assert_false(isinf(sum));
+  return took / CASES;
+}
+
 GROUP(make_context, free_context);
 
 TEST(kernels_have_twins) {
-  static const kernel kernels[] = {
+  const kernel kernels[] = {
       {"refraction",
        "vec4 f(vec4 a, vec4 b) {\n  vec3 t;\n"
        "  bool passes = refract_direction(a.xyz, b.xyz, a.w, t);\n"
@@ -181,18 +230,31 @@ TEST(kernels_have_twins) {
        "vec4 f(vec4 a, vec4 b) {\n  vec2 r = vec2(a.w, b.w);\n"
        "  return vec4(facets_reflect(r, a.xyz, b.xyz), facets_pdf(r, b.xyz, a.xyz),\n"
        "              facets_visible(r, a.xyz), facets_density(r, a.xyz));\n}\n",
-       draw_lobe, lobe, NULL, 4, false, 8}};
+       draw_lobe, lobe, NULL, 4, false, 8},
+      {"films",
+       printed("#define REFRACTORS 1\n#define REFRACTOR_ROOM 1\n#define PLANE_ROOM 1\n"
+               "#define LIGHT_ROOM 1\n#define RECEIVER_ROOM 1\n#define SURFACE_ROOM 1\n"
+               "#define SPECTRUM_ROOM 1\n#define FILMS\n#define FILM_ANGLES %d\n"
+               "#define BAND_SETS %d\n#include \"refractor.glsl\"\n"
+               "vec4 f(vec4 a, vec4 b) {\n  film_row = 0;\n"
+               "  return film_shares(0, a.z > 0.5, a.x, a.y).xyxy;\n}\n",
+               ABBE_FILM_ANGLES, ABBE_CAMERA_BAND_SETS),
+       draw_film, film, NULL, 2, false, 32}};
+  const abbe_gl *gl = abbe_context_gl(context);
+  bind_film(gl);
   size_t wrong = 0;
   for (size_t k = 0; k < sizeof kernels / sizeof *kernels; k++) {
     const kernel *is = &kernels[k];
     double device = 0, processor = 0;
     memset(inputs, 0, sizeof inputs);
     for (int i = 0; i < CASES; i++) is->draw(i, inputs[i]);
-    glsl_evaluate(abbe_context_gl(context),
-                  printed("const float PI = 3.14159265358979;\n#define MIRRORS\n#define ROUGH\n"
-                          "#include \"optics.glsl\"\n%s",
-                          is->text),
-                  (const float(*)[8])inputs, CASES, outputs);
+    const char *head = is->text[0] == '#' ? ""
+                                          : "const float PI = 3.14159265358979;\n#define MIRRORS\n"
+                                            "#define ROUGH\n#include \"optics.glsl\"\n";
+    const GLuint program = glsl_make(gl, printed("%s%s", head, is->text));
+    const double shader_ns = glsl_time(gl, program, (const float(*)[8])inputs, CASES, outputs);
+    gl->DeleteProgram(program);
+    const double twin_ns = time_twin(is);
     for (int i = 0; i < CASES; i++) {
       device = fmax(device, ulps_off(is, inputs[i], outputs[i]));
       float out[4];
@@ -200,8 +262,10 @@ TEST(kernels_have_twins) {
       is->processor(inputs[i], out);
       processor = fmax(processor, ulps_off(is, inputs[i], out));
     }
-    print_message("%s: %.2f ULPs%s", is->name, device, is->processor == NULL ? "\n" : "");
-    if (is->processor != NULL) print_message("; on the processor %.2f\n", processor);
+    print_message("%s: %.2f ULPs, %.0f ns; in doubles %.0f ns", is->name, device, shader_ns,
+                  twin_ns);
+    if (is->processor != NULL) print_message("; on the processor %.2f ULPs", processor);
+    print_message("\n");
     wrong += device > is->bound || processor > is->bound;
   }
   assert_int_equal(wrong, 0);

@@ -32,6 +32,25 @@ TEST(shipped_tables_come_back_the_same) {
   }
 }
 
+/* Lines of points have at most 100 characters with what parts them, are full, and some just so. */
+TEST(lines_of_points_are_full) {
+  enum { WIDTH = 100 };
+  MADE(abbe_material_table, table, abbe_material_table_load("default", &table, &error));
+  FREED char *text = NULL;
+  OWNED(abbe_material_table, back) = reread(&table, &text);
+  size_t before = 0, just = 0; /* characters of a line of points that goes on; 0: no such line */
+  for (char *rest = text, *line; (line = strtok_r(rest, "\n", &rest)) != NULL;) {
+    const size_t length = strlen(line), blank = strspn(line, " ");
+    const bool points = line[blank] == '[' && strchr("-.0123456789", line[blank + 1]) != NULL;
+    const size_t first = points ? strcspn(line + blank, "]") + 1 : 0;
+    assert_true(!points || length < WIDTH);
+    if (points && before > 0) assert_true(before + 1 + first + 2 > WIDTH);
+    before = points && line[length - 1] == ',' ? length : 0;
+    just += before + 1 == WIDTH;
+  }
+  assert_true(just > 0);
+}
+
 TEST(random_records_come_back_the_same) {
   srand(11);
   for (int round = 0; round < 20; round++) {
