@@ -88,6 +88,32 @@ TEST(lifted_colours_are_the_same_in_both) {
   }
 }
 
+/* Straight down on a place of a floor with a texture of 2 x 2 texels. */
+static void see_place(double x, double y, const char *repeat, double xyz[3]) {
+  OWNED(abbe_scene, scene) = scene_of(printed(
+      "materials: glass.yaml\ncamera: {eye: [%g, %g, 1], target: [%g, %g, 0], up: [0, 1, 0], fov: "
+      "1}\n"
+      "lights:\n- {name: sun, kind: directional, direction: [0, 0, -1], irradiance: 3.14159265}\n"
+      "objects:\n- {name: card, shape: rectangle, width: 2, height: 2, reflectance: 1, "
+      "texture: " ABBE_SOURCE_DIR "/tests/fuzz/parts/dot.png%s}\n",
+      x, y, x, y, repeat));
+  render_xyz(&scene, ABBE_RGB_SPACE_REC709, xyz);
+}
+
+/* Twice across and three times along: there is what the whole texture has at so many times the
+ * place, a texel's middle in both. */
+TEST(textures_are_repeated) {
+  double repeated[3], once[3], there[3], differs = 0;
+  see_place(-0.25, -0.5, ", repeat: [2, 3]", repeated);
+  see_place(0.5, 0.5, "", once);
+  see_place(-0.25, -0.5, "", there);
+  for (int k = 0; k < 3; k++) {
+    assert_near(repeated[k], once[k], 0.02);
+    differs = fmax(differs, fabs(repeated[k] - there[k]));
+  }
+  assert_true(differs > 0.1);
+}
+
 #define ROOM                                                                                       \
   "materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\nambient: 0.3\n"       \
   "background: 0.2\n"                                                                              \
