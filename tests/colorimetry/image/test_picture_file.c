@@ -163,6 +163,7 @@ TEST(what_a_header_says_wrongly_is_refused_by_its_line) {
       {"samples = 1e999\n", "cube.hdr:2: 'samples' is '1e999'", ABBE_PARSE},
       {"samples = 4x\n", "cube.hdr:2: 'samples' is '4x'", ABBE_PARSE},
       {"samples = four\n", "cube.hdr:2: 'samples' is 'four'", ABBE_PARSE},
+      {"description = {two\nlines}\nsamples = 4x\n", "cube.hdr:4: 'samples'", ABBE_PARSE},
       {"samples = 4.5\n", "no line 'samples = ' with a number from 1 on", ABBE_PARSE},
       {"samples = 4\nlines = 1e9\nbands = 5\n", "4 x 1000000000 pixels", ABBE_INVALID_ARGUMENT},
       {"samples = 4\nlines = 3\nbands = 1e9\n", "1000000000 bands", ABBE_INVALID_ARGUMENT},
