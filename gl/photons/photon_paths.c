@@ -220,7 +220,7 @@ static void follow_segment(const job *j, walker *w, const abbe_walk_interface *h
 }
 
 static void follow(const job *j, group *g) {
-  const abbe_walk_path *at[RAYS];
+  const abbe_walk_path *at[RAYS] = {0};
   abbe_walk_interface h[RAYS];
   bool goes_on = g->count > 0;
   for (int k = 0; k < g->count; k++) at[k] = &g->walker[k].at;
@@ -264,7 +264,7 @@ static void aim(const job *j, const abbe_photon *from, photon_ray *r) {
 /* Returns a bit for each of so many items whose photon comes to a refractor. */
 static unsigned start(const job *j, const task *t, int count, photon_ray *r) {
   abbe_walk_path path[RAYS];
-  const abbe_walk_path *at[RAYS];
+  const abbe_walk_path *at[RAYS] = {0};
   abbe_walk_interface h[RAYS];
   for (int k = 0; k < count; k++) {
     aim(j, &j->photons[t[k].photon], &r[k]);
