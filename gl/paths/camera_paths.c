@@ -177,7 +177,7 @@ static void begin_path(walker *w, bool in_mirror, int band_at) {
 /* Follows so many paths side by side to their ends. */
 static void follow_paths(walker *const *w, int count) {
   abbe_walk_interface h[RAYS];
-  const abbe_walk_path *at[RAYS];
+  const abbe_walk_path *at[RAYS] = {0};
   for (int k = 0; k < count; k++) at[k] = &w[k]->at;
   for (bool goes_on = true; goes_on;) {
     const unsigned met = abbe_walk_next(&w[0]->c->scene, at, count, h);
@@ -299,7 +299,7 @@ static unsigned find_first(pixel_light *p, const uint32_t *pixel, int count, con
                            places *to) {
   walker *w[RAYS];
   abbe_walk_interface h[RAYS];
-  const abbe_walk_path *at[RAYS];
+  const abbe_walk_path *at[RAYS] = {0};
   for (int k = 0; k < count; k++) {
     p[k] = (pixel_light){.start = {.c = c,
                                    .walk = {.of = &c->scene,
