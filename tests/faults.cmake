@@ -18,6 +18,7 @@ target_link_libraries(faults_starve PUBLIC abbe_build)
 
 abbe_test(no_memory_tables cpu WRAPPED faults_memory abbe_spectral abbe_base)
 abbe_test(no_memory_scenes cpu WRAPPED faults_memory abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
+abbe_test(no_memory_imports cpu WRAPPED faults_memory abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 abbe_test(no_memory_trace cpu WRAPPED faults_memory abbe_validation abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 
 # The calls with which Abbe's own objects write files (faults/disk.h).
@@ -51,7 +52,7 @@ if(DEFLATE_FOUND)
     LINKER:--wrap=libdeflate_alloc_decompressor)
 endif()
 abbe_test(library_faults cpu WRAPPED faults_library exr_library abbe_colorimetry abbe_spectral abbe_base)
-abbe_label(cpu memory NAMES no_memory_tables no_memory_scenes no_memory_trace full_disk library_faults)
+abbe_label(cpu memory NAMES no_memory_tables no_memory_scenes no_memory_imports no_memory_trace full_disk library_faults)
 
 # Kills the program, or starves it, at a chosen call (faults/preload.c).
 add_library(faults_preload MODULE faults/preload.c)

@@ -2,8 +2,9 @@ foreach(name transform
         mesh coarse_mesh mesh_fix topology shells
         convex shape shape_meshes water scene_time
         cut cut_asc designs cut_file cut_gcs cut_gem cut_meets cut_polyhedron cut_stretch
-        digest scene scene_doubts object_file object_motion object_surface light_file camera_file coating_file scene_file setting studio
-        polygon mesh_reading obj_file ply_file stl_file gltf_file
+        digest scene scene_doubts object_file object_motion object_surface light_file camera_file coating_file scene_file scene_keys scene_changes refused_scenes
+        setting studio
+        polygon mesh_reading obj_file ply_file stl_file gltf_file gltf_keys
         area_lights environment environment_file environment_lights environment_picture environment_source
         radiance_map
         sphere_mesh exit_pages light_exits volume_body caustic_volume volume_file

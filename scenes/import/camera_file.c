@@ -190,6 +190,12 @@ static double distance(const abbe_scene *scene, const bool *framed, const double
   return far;
 }
 
+static abbe_result refuse_up(const abbe_yaml *yaml, abbe_yaml_node node, abbe_error *error) {
+  return abbe_yaml_fail(yaml, node, error,
+                        "the camera's 'up' points along its view (or is zero); any other "
+                        "direction will do");
+}
+
 static abbe_result frame(abbe_yaml *yaml, abbe_yaml_node node, const abbe_scene *scene,
                          abbe_camera *out, abbe_error *error) {
   bool framed[ABBE_SCENE_MAX_OBJECTS] = {false};
@@ -197,8 +203,8 @@ static abbe_result frame(abbe_yaml *yaml, abbe_yaml_node node, const abbe_scene 
   double fill = 0.7, far = 0, aside[2], min[3], max[3];
   axes a;
   ABBE_TRY(mark_all(yaml, abbe_yaml_get(yaml, node, "frame"), scene, framed, error));
-  ABBE_TRY(abbe_yaml_get_number(yaml, node, "fill", 0.01, 1, &fill, error));
-  ABBE_TRY(read_side(yaml, node, a.of[2], error));
+  (void)abbe_yaml_get_number(yaml, node, "fill", 0.01, 1, &fill, NULL); /* read_frame() did */
+  (void)read_side(yaml, node, a.of[2], NULL);
   for (int k = 0; k < 3; k++) {
     min[k] = INFINITY, max[k] = -INFINITY;
     for (size_t i = 0; i < scene->object_count; i++)
@@ -210,7 +216,7 @@ static abbe_result frame(abbe_yaml *yaml, abbe_yaml_node node, const abbe_scene 
   }
   if (abbe_yaml_get(yaml, node, "eye").id != 0) return ABBE_OK;
   abbe_vector_cross(out->up, a.of[2], a.of[0]);
-  if (!abbe_vector_normalise(a.of[0])) return ABBE_OK; /* looks along up: it is refused */
+  if (!abbe_vector_normalise(a.of[0])) return refuse_up(yaml, node, error);
   abbe_vector_cross(a.of[2], a.of[0], a.of[1]);
   const double high = fill * tan(0.5 * out->fov_y_rad);
   const double tangent[2] = {high * (double)out->width / (double)out->height, high};
@@ -236,21 +242,21 @@ static abbe_result place(abbe_yaml *yaml, abbe_yaml_node node, double focal, abb
   const bool framed = abbe_yaml_get(yaml, node, "frame").id != 0;
   const bool stands = !framed || abbe_yaml_get(yaml, node, "eye").id != 0;
   double least = focal, most = ABBE_SCENE_FAR;
-  abbe_result result = framed ? frame(yaml, node, scene, c, error) : ABBE_OK;
-  if (focal <= 0 || result != ABBE_OK) return result;
+  if (framed) ABBE_TRY(frame(yaml, node, scene, c, error));
+  if (focal <= 0) return ABBE_OK;
   if (stands && !(far_of(c) > focal))
     return abbe_yaml_fail(yaml, abbe_yaml_get(yaml, node, "lens"), error,
                           "a lens is sharp beyond its focal length, and the camera's target is "
                           "%.3g mm away",
                           1e3 * far_of(c));
   if (stands) c->fov_y_rad = lens_angle(focal, far_of(c));
-  for (int i = 0; i < 60 && !stands && result == ABBE_OK; i++) {
+  for (int i = 0; i < 60 && !stands; i++) {
     const double distance = sqrt(least * most);
     c->fov_y_rad = lens_angle(focal, distance);
-    result = frame(yaml, node, scene, c, error);
+    (void)frame(yaml, node, scene, c, NULL); /* as before the lens */
     *(far_of(c) > distance ? &least : &most) = distance;
   }
-  return result;
+  return ABBE_OK;
 }
 
 /* Along the view to the middle of those objects together. */
@@ -279,7 +285,7 @@ static abbe_result focus(abbe_yaml *yaml, abbe_yaml_node node, double focal, abb
   double number;
   const abbe_yaml_node at = abbe_yaml_get(yaml, node, "focus");
   const char *text = abbe_yaml_text(yaml, at);
-  ABBE_TRY(read_aperture(yaml, node, &number, error));
+  (void)read_aperture(yaml, node, &number, NULL); /* abbe_camera_read() did */
   if (number <= 0) return ABBE_OK;
   const double lens = focal; /* without one the film is there for the f-number alone */
   if (focal <= 0) focal = 0.5 * FILM_M / tan(0.5 * c->fov_y_rad);
@@ -321,16 +327,14 @@ abbe_result abbe_camera_frame(abbe_yaml *yaml, abbe_yaml_node root, abbe_scene *
   const abbe_yaml_node node = abbe_yaml_get(yaml, root, "camera");
   abbe_camera *c = &scene->camera;
   double view[3], side[3], focal;
-  ABBE_TRY(read_lens(yaml, node, &focal, error));
+  (void)read_lens(yaml, node, &focal, NULL); /* abbe_camera_read() did */
   ABBE_TRY(place(yaml, node, focal, scene, error));
   abbe_vector_subtract(c->target, c->eye, view);
   if (!(abbe_vector_length(view) > 0.0))
     return abbe_yaml_fail(yaml, node, error, "the camera's 'eye' and 'target' are the same point");
   abbe_vector_cross(view, c->up, side);
   if (!(abbe_vector_length(side) > 1e-9 * abbe_vector_length(view) * abbe_vector_length(c->up)))
-    return abbe_yaml_fail(yaml, node, error,
-                          "the camera's 'up' points along its view (or is zero); any other "
-                          "direction will do");
+    return refuse_up(yaml, node, error);
   ABBE_TRY(focus(yaml, node, focal, scene, error));
   return check_pupil(yaml, node, scene, error);
 }

@@ -284,7 +284,7 @@ static abbe_result settle(const abbe_object_reading *r, const abbe_object *objec
   bool somewhere = false;
   for (size_t i = 0; c != NULL && i < c->count; i++)
     somewhere = somewhere || c->coating[i].faces != NULL;
-  if (!somewhere && (c == NULL || c->count < 2)) return ABBE_OK;
+  if (!somewhere) return ABBE_OK;
   c->face = calloc(object->mesh.face_count + 1, sizeof *c->face);
   if (c->face == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for coated faces");
   c->face_count = object->mesh.face_count;

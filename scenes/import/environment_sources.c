@@ -85,8 +85,8 @@ static abbe_result read_size(abbe_yaml *yaml, abbe_yaml_node node, abbe_environm
     return abbe_yaml_fail(yaml, layout, error, "'layout' says nothing without a 'file'");
   ABBE_TRY(abbe_yaml_get_count(yaml, node, "size", LEAST_SIZE, MOST_SIZE, &size, error));
   if (size % 2 != 0)
-    ABBE_TRY(abbe_yaml_fail(yaml, abbe_yaml_get(yaml, node, "size"), error,
-                            "'size' is the map's width in texels, an even number"));
+    return abbe_yaml_fail(yaml, abbe_yaml_get(yaml, node, "size"), error,
+                          "'size' is the map's width in texels, an even number");
   return abbe_radiance_map_make(size, &out->map, error);
 }
 

@@ -63,9 +63,8 @@ static abbe_result read_radius(abbe_yaml *yaml, abbe_yaml_node node, abbe_light 
   ABBE_TRY(abbe_yaml_require(yaml, node, "radius", &value, error));
   ABBE_TRY(abbe_yaml_get_length(yaml, node, "radius", 0, ABBE_SCENE_FAR, &out->radius, error));
   if (!(out->radius > 0.0))
-    ABBE_TRY(
-        abbe_yaml_fail(yaml, value, error,
-                       "'radius' is zero; a disk has an area (a light without one is a point)"));
+    return abbe_yaml_fail(yaml, value, error,
+                          "'radius' is zero; a disk has an area (a light without one is a point)");
   return ABBE_OK;
 }
 
@@ -75,7 +74,7 @@ static abbe_result read_side(abbe_yaml *yaml, abbe_yaml_node node, const char *k
   ABBE_TRY(abbe_yaml_require(yaml, node, key, &value, error));
   ABBE_TRY(abbe_yaml_get_length(yaml, node, key, 0, ABBE_SCENE_FAR, out, error));
   if (!(*out > 0.0))
-    ABBE_TRY(abbe_yaml_fail(yaml, value, error, "'%s' is zero; a rectangle has an area", key));
+    return abbe_yaml_fail(yaml, value, error, "'%s' is zero; a rectangle has an area", key);
   return ABBE_OK;
 }
 

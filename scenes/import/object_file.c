@@ -25,7 +25,7 @@ static abbe_result read_rotate(abbe_yaml *yaml, abbe_yaml_node node, double out[
   ABBE_TRY(abbe_yaml_get_number(yaml, node, "angle", -3600, 3600, &angle, error));
   ABBE_TRY(abbe_yaml_check_keys(yaml, node, "'rotate'", error));
   if (!(abbe_vector_length(axis) > 0.0))
-    ABBE_TRY(abbe_yaml_fail(yaml, node, error, "'axis' is zero; it must point somewhere"));
+    return abbe_yaml_fail(yaml, node, error, "'axis' is zero; it must point somewhere");
   abbe_transform_rotate(angle * ABBE_DEGREE, axis, out);
   return ABBE_OK;
 }
@@ -147,13 +147,13 @@ static abbe_result read_receiver(const abbe_object_reading *r, abbe_object *out,
   const abbe_yaml_node texture = abbe_yaml_get(r->yaml, r->node, "texture");
   const abbe_yaml_node repeat = abbe_yaml_get(r->yaml, r->node, "repeat");
   if (repeat.id && !texture.id)
-    ABBE_TRY(abbe_yaml_fail(r->yaml, repeat, error, "'repeat' says nothing without a 'texture'"));
+    return abbe_yaml_fail(r->yaml, repeat, error, "'repeat' says nothing without a 'texture'");
   ABBE_TRY(
       abbe_yaml_get_numbers(r->yaml, r->node, "repeat", 2, 1e-6, 1e6, out->texture_repeat, error));
   if (texture.id && out->spectrum != NULL)
-    ABBE_TRY(abbe_yaml_fail(r->yaml, texture, error,
-                            "a texture multiplies a reflectance in red, green and blue; leave it "
-                            "out, or the spectrum"));
+    return abbe_yaml_fail(r->yaml, texture, error,
+                          "a texture multiplies a reflectance in red, green and blue; leave it "
+                          "out, or the spectrum");
   if (texture.id) ABBE_TRY(read_texture(r, texture, out, error));
   return ABBE_OK;
 }

@@ -77,8 +77,8 @@ static abbe_result read_rain(const abbe_object_reading *r, abbe_water_rain *out,
   ABBE_TRY(abbe_yaml_get_number(r->yaml, node, "every", -ABBE_SCENE_FAR, ABBE_SCENE_FAR,
                                 &out->every, error));
   if (!(out->every > 0))
-    ABBE_TRY(abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, node, "every"), error,
-                            "'every' is the time between two drops, in seconds, above 0"));
+    return abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, node, "every"), error,
+                          "'every' is the time between two drops, in seconds, above 0");
   ABBE_TRY(need_water_length(r->yaml, node, "depth", &out->depth, error));
   ABBE_TRY(need_water_length(r->yaml, node, "radius", &out->radius, error));
   ABBE_TRY(abbe_yaml_get_count(r->yaml, node, "seed", 0, UINT32_MAX, &seed, error));

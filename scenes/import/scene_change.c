@@ -154,7 +154,7 @@ static const char *material_of(const abbe_yaml_edit *edit, size_t i, size_t *ind
   for (size_t k = 0; k < abbe_yaml_count(edit->yaml, object); k++) {
     if (!abbe_yaml_is_mapping(edit->yaml, object)) return NULL;
     const char *key = abbe_yaml_text(edit->yaml, abbe_yaml_key(edit->yaml, object, k));
-    if (key == NULL || strcmp(key, "material") != 0) continue;
+    if (strcmp(key, "material") != 0) continue;
     *index = k;
     return abbe_yaml_text(edit->yaml, abbe_yaml_value(edit->yaml, object, k));
   }
@@ -197,8 +197,8 @@ abbe_result abbe_scene_change_material(abbe_yaml_edit *edit, const char *text, a
     size_t index = 0;
     const char *material = material_of(edit, i, &index);
     const char *object = name_of(edit->yaml, objects_of(edit), i);
-    if (material == NULL || (strcmp(material, name) != 0 &&
-                             (equals == NULL || object == NULL || strcmp(object, name) != 0)))
+    if (material == NULL ||
+        (strcmp(material, name) != 0 && (object == NULL || strcmp(object, name) != 0)))
       continue;
     result = abbe_yaml_edit_replace(edit, abbe_yaml_item(edit->yaml, objects_of(edit), i), index,
                                     stone, error);
@@ -231,10 +231,8 @@ typedef struct keyframe {
 } keyframe;
 
 static bool has_key(const abbe_yaml *yaml, abbe_yaml_node mapping, const char *wanted) {
-  for (size_t i = 0; i < abbe_yaml_count(yaml, mapping); i++) {
-    const char *key = abbe_yaml_text(yaml, abbe_yaml_key(yaml, mapping, i));
-    if (key != NULL && strcmp(key, wanted) == 0) return true;
-  }
+  for (size_t i = 0; i < abbe_yaml_count(yaml, mapping); i++)
+    if (strcmp(abbe_yaml_text(yaml, abbe_yaml_key(yaml, mapping, i)), wanted) == 0) return true;
   return false;
 }
 
@@ -301,7 +299,7 @@ static abbe_result interpolate(abbe_yaml *yaml, abbe_yaml_node list, double time
                             "keyframes come in rising order of time, all with as many numbers");
     if (result != ABBE_OK || time < before.time) continue;
     const double t = fmin((time - before.time) / (next.time - before.time), 1);
-    for (size_t k = 0; k < MOST_NUMBERS && k < (next.count > 0 ? next.count : 1); k++)
+    for (size_t k = 0; k < (next.count > 0 ? next.count : 1); k++)
       out->value[k] = before.value[k] + t * (next.value[k] - before.value[k]);
   }
   return result;

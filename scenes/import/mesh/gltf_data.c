@@ -131,7 +131,7 @@ abbe_result abbe_gltf_reference(const abbe_gltf *g, const cJSON *object, const c
 
 static int digit_of(char c) {
   static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const char *at = c != '\0' ? strchr(digits, c == '-' ? '+' : c == '_' ? '/' : c) : NULL;
+  const char *at = strchr(digits, c == '-' ? '+' : c == '_' ? '/' : c);
   return at != NULL ? (int)(at - digits) : -1;
 }
 
@@ -239,14 +239,14 @@ static abbe_result load(abbe_gltf *g, size_t index) {
 static abbe_result find_bytes(abbe_gltf *g, const cJSON *object, size_t offset, size_t size,
                               size_t *stride, const char **out) {
   const cJSON *view, *buffer;
-  size_t start = 0, length = 0, step = 0, index = 0;
+  size_t start = 0, length = 0, step = 0;
   ABBE_TRY(abbe_gltf_reference(g, object, "bufferView", "an accessor", &g->views, &view));
   ABBE_TRY(abbe_gltf_reference(g, view, "buffer", "a buffer view", &g->buffers, &buffer));
   ABBE_TRY(abbe_gltf_whole(g, view, "byteOffset", "a buffer view", 0, &start));
   ABBE_TRY(abbe_gltf_whole(g, view, "byteLength", "a buffer view", 0, &length));
   ABBE_TRY(abbe_gltf_whole(g, view, "byteStride", "a buffer view", 0, &step));
-  ABBE_TRY(abbe_gltf_whole(g, view, "buffer", "a buffer view", 0, &index));
   if (buffer == NULL) return abbe_gltf_fail(g, ABBE_SCHEMA, "a buffer view names no 'buffer'");
+  const size_t index = (size_t)cJSON_GetObjectItemCaseSensitive(view, "buffer")->valuedouble;
   ABBE_TRY(load(g, index));
   if (stride != NULL && step > 0) *stride = step;
   const size_t has = g->buffer[index].size;

@@ -163,8 +163,7 @@ static abbe_result add_primitive(abbe_gltf *g, const primitive *p, const double 
   const bool mirrored = abbe_transform_determinant3(matrix) < 0;
   ABBE_TRY(abbe_gltf_charge(g, p->points, 3));
   ABBE_TRY(abbe_gltf_charge(g, p->indices, 1));
-  if (first + p->points > ABBE_MESH_MAX_VERTICES || !add_vertices(g->to, p, matrix))
-    return abbe_mesh_reading_no_memory(g->to, g->error);
+  if (!add_vertices(g->to, p, matrix)) return abbe_mesh_reading_no_memory(g->to, g->error);
   for (size_t i = 0; i + 2 < p->indices; i += step) {
     const bool odd = p->mode == STRIP && i % 2 == 1;
     const size_t corner[3] = {p->mode > STRIP ? 0 : odd ? i + 1 : i, odd ? i : i + 1, i + 2};
@@ -379,6 +378,6 @@ abbe_result abbe_gltf_read(abbe_mesh_reading *to, const char *data, size_t size,
   ABBE_TRY(check_extensions(&g));
   ABBE_TRY(make_lists(&g));
   ABBE_FREED bool *visited = calloc(2 * g.nodes.count + 1, sizeof *visited);
-  if (visited == NULL) ABBE_TRY(abbe_mesh_reading_no_memory(to, error));
+  if (visited == NULL) return abbe_mesh_reading_no_memory(to, error);
   return walk_scene(&g, visited, visited + g.nodes.count);
 }

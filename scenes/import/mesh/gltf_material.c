@@ -106,7 +106,7 @@ static void read_warning(const cJSON *material, char *text, size_t size) {
   for (int c = 0; c < 3 && c < cJSON_GetArraySize(tint); c++)
     tinted = tinted || cJSON_GetArrayItem(tint, c)->valuedouble != 1;
   const bool rules[] = {tinted, !cJSON_IsNumber(rough) || rough->valuedouble != 0,
-                        cJSON_IsNumber(share) && share->valuedouble != 1};
+                        share->valuedouble != 1}; /* it transmits */
   static const char *const words[] = {"the tint of its surface", "roughness",
                                       "the share that it does not transmit"};
   text[0] = '\0';

@@ -124,10 +124,10 @@ static bool take_property(reading *r, const char *line) {
 
 static bool take_format(reading *r, const char *line) {
   static const char *const names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
-  char name[32] = "";
-  if (sscanf(line, "format %31s", name) != 1) return false;
+  const char *name = line + 7 + strspn(line + 7, " ");
+  const size_t length = strcspn(name, " ");
   for (int i = 0; i < 3; i++)
-    if (strcmp(name, names[i]) == 0) {
+    if (strlen(names[i]) == length && memcmp(name, names[i], length) == 0) {
       r->encoding = (encoding)i;
       return true;
     }
@@ -209,7 +209,7 @@ static void skip_blanks(reading *r) {
 
 static bool read_text(reading *r, double *out) {
   skip_blanks(r);
-  return abbe_number_read(r->at, &r->at, out) && r->at <= r->end; /* a zero byte ends the file */
+  return abbe_number_read(r->at, &r->at, out); /* a zero byte ends the file */
 }
 
 static bool read_binary(reading *r, number_kind kind, double *out) {

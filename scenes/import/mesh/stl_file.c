@@ -93,7 +93,7 @@ static abbe_result fail(reading *r, const char *what) {
 static bool read_numbers(reading *r, double out[3]) {
   for (int k = 0; k < 3; k++) {
     skip_blanks(r);
-    if (!abbe_number_read(r->at, &r->at, &out[k]) || r->at > r->end) return false;
+    if (!abbe_number_read(r->at, &r->at, &out[k])) return false; /* a zero byte ends the file */
   }
   return true;
 }

@@ -50,6 +50,26 @@ TEST(objects_fill_the_picture) {
   }
 }
 
+/* A target of its own stays, and a needle that points at the camera fits at its point. */
+TEST(a_frame_may_have_a_target) {
+  FILLED(abbe_scene, scene, make("{frame: [ball], target: [0.2, 0.1, 0.1], fov: 20}", &scene));
+  const double target[3] = {0.2, 0.1, 0.1};
+  for (int k = 0; k < 3; k++) assert_near(scene.camera.target[k], target[k], 0);
+  abbe_scene_free(&scene);
+  char path[] = "/tmp/abbe-test-needle-XXXXXX";
+  static const char needle[] = "v 1 0 0\nv 0 0.01 0\nv 0 -0.01 0\nv 0 0 0.01\nf 1 2 4\nf 1 4 3\n";
+  assert_non_null(mkdtemp(path));
+  const char *file = printed("%s/needle.obj", path);
+  OK(abbe_file_write(file, needle, strlen(needle), &error));
+  scene = scene_of(printed("materials: glass.yaml\ncamera: {frame: needle, target: [0.5, 0, 0], "
+                           "elevation: 0, azimuth: 0}\n" OBJECTS
+                           "- {name: needle, mesh: %s, reflectance: 1}\n",
+                           file));
+  const double eye[3] = {1, 0, 0};
+  for (int k = 0; k < 3; k++) assert_near(scene.camera.eye[k], eye[k], 0);
+  assert_int_equal(unlink(file) + rmdir(path), 0);
+}
+
 TEST(the_side_is_the_cameras_own) {
   double view[3];
   FILLED(abbe_scene, scene, make("{frame: [ball], elevation: 30, azimuth: 60, fov: 20}", &scene));

@@ -194,6 +194,35 @@ TEST(knots_are_read) {
   }
 }
 
+/* With room for no object more. */
+TEST(rooms_are_full) {
+  refuses("{shape: sphere, radius: 1, material: water, clouds: [{radius: 0.1}]}",
+          "as far as the scene has room");
+  refuses("{shape: sphere, radius: 1, material: water, setting: {kind: band, metal: gold}}",
+          "1 settings: a stone has up to 4, and a scene 1024 objects");
+  refuses("{shape: water, size: [1, 1, 0.1], material: water, time: soon}", "'time: soon'");
+}
+
+/* More names of facets than a sentence has room for. */
+TEST(many_names_of_facets) {
+  char text[4096] = "g 96 0\na 90 1 96 n G 24 48 72\na -40 0.3 96 24 48 72\n";
+  for (int i = 0; i < 24; i++)
+    snprintf(text + strlen(text), sizeof text - strlen(text),
+             "a %d %g %d n a-name-that-is-long-%d\n", 20 + i % 2, 0.4 + 1e-4 * i, 1 + 4 * i, i);
+  char path[] = "/tmp/abbe-test-names-XXXXXX";
+  assert_non_null(mkdtemp(path));
+  const char *file = printed("%s/a.asc", path);
+  FILE *to = fopen(file, "w");
+  assert_non_null(to);
+  fputs(text, to);
+  fclose(to);
+  refuses(printed("{shape: cut, file: %s, width: 0.01, material: water, coating: {layers: [[1.38, "
+                  "1]], faces: culet}}",
+                  file),
+          "a-name-that-is-long-3, a-name-that");
+  assert_int_equal(remove(file) + remove(path), 0);
+}
+
 TEST(a_sphere_stays_one_under_similarities_only) {
   OWNED(abbe_scene, scene) =
       read("{shape: sphere, radius: 2, material: water, transform: [{scale: 0.5}, {rotate: {axis: "

@@ -20,6 +20,8 @@ static abbe_result load(const char *json, const char *part, abbe_material *out, 
   "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},"                     \
   "\"KHR_materials_volume\":{\"thicknessFactor\":0.01" more "},"                                   \
   "\"KHR_materials_ior\":{\"ior\":" ior "}"
+#define SOLID "\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_materials_volume\":"
+#define COLOUR(text) ",\"attenuationDistance\":1,\"attenuationColor\":" text
 #define ONE(ior, more) "{\"materials\":[" GLASS("stone", ior, more) "}}]}"
 
 GROUP(make_folder, drop_folder);
@@ -94,6 +96,17 @@ TEST(bad_files_are_refused) {
        "three numbers"},
       {ONE("1.5", ",\"attenuationDistance\":1,\"attenuationColor\":[1,2,1]"), NULL, ABBE_SCHEMA,
        "three numbers"},
+      {ONE("1.5", COLOUR("[\"red\",1,1]")), NULL, ABBE_SCHEMA, "three numbers"},
+      {ONE("1.5", COLOUR("[1,-1,1]")), NULL, ABBE_SCHEMA, "three numbers"},
+      {"{\"materials\":[{\"extensions\":{" SOLID "{\"thicknessFactor\":\"thick\"}}}]}", NULL,
+       ABBE_SCHEMA, "'thicknessFactor' is no number"},
+      {"{\"materials\":[{\"name\":\"stone\",\"extensions\":{\"KHR_materials_transmission\":"
+       "{\"transmissionFactor\":0}}}]}",
+       NULL, ABBE_NOT_FOUND, "no material transmits"},
+      {"{\"materials\":[{\"name\":\"cloth\"}," GLASS("stone", "1.5", "") "}}]}", "cloth",
+       ABBE_UNSUPPORTED, "those that do: 'stone'"},
+      {"{\"materials\":[{\"name\":\"cloth\"}]}", "silk", ABBE_NOT_FOUND,
+       "that transmit light: none"},
       {"{\"materials\":[{\"name\":\"film\",\"extensions\":{\"KHR_materials_transmission\":{"
        "\"transmissionFactor\":1}}}]}",
        NULL, ABBE_UNSUPPORTED, "thin wall"},
@@ -115,8 +128,50 @@ TEST(bad_files_are_refused) {
   }
   abbe_material m;
   char *name;
+  assert_int_equal(abbe_gltf_material_load("stone", NULL, &m, &name, NULL), ABBE_UNSUPPORTED);
   assert_int_equal(abbe_gltf_material_load("stone.obj", NULL, &m, &name, NULL), ABBE_UNSUPPORTED);
   assert_int_equal(abbe_gltf_material_load("/no/such.glb", NULL, &m, &name, NULL), ABBE_IO);
+}
+
+/* A colour takes light away over a distance, where it is not white; half rough is rough. */
+TEST(colours_over_a_distance) {
+  static const struct {
+    const char *more;
+    double red, green; /* per metre */
+  } rows[] = {{",\"attenuationColor\":[0.5,0.5,0.5]", 0, 0},
+              {COLOUR("[1,1,1]"), 0, 0},
+              {COLOUR("[1,0.5,1]"), 0, 0.69314718},
+              {COLOUR("[1,1,0.5]"), 0, 0},
+              {COLOUR("[0.25,1,1]"), 1.38629436, 0}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char *name;
+    const char *text =
+        printed("{\"materials\":[{\"pbrMetallicRoughness\":{\"roughnessFactor\":0.5},"
+                "\"extensions\":{" SOLID "{\"thicknessFactor\":1%s}}}]}",
+                rows[i].more);
+    MADE(abbe_material, m, load(text, NULL, &m, &name, &error));
+    assert_near(abbe_material_attenuation(&m, 611.4), rows[i].red, 1e-6);
+    assert_near(abbe_material_attenuation(&m, 549.1), rows[i].green, 1e-6);
+    assert_true((m.attenuation != NULL) == (i > 1));
+    assert_string_equal(m.warning, "glTF's; left out: roughness");
+  }
+}
+
+/* Of many names those are listed that have room in a sentence. */
+TEST(names_that_are_many) {
+  static const char name[] = "a-name-of-a-stone-that-is-nearly-fifty-letters-long";
+  char text[8192] = "{\"materials\":[";
+  for (int i = 0; i < 12; i++)
+    snprintf(text + strlen(text), sizeof text - strlen(text),
+             "%s{\"name\":\"%s-%d\","
+             "\"extensions\":{" SOLID "{}}}",
+             i > 0 ? "," : "", name, i);
+  strcat(text, "]}");
+  abbe_material m;
+  char *own;
+  REFUSED(ABBE_NOT_FOUND, "'a-name-of-a-stone-that-is-nearly-fifty-letters-long-6'",
+          load(text, NULL, &m, &own, &error));
+  assert_null(strstr(last_error.text, "long-8"));
 }
 
 /* Binary files that end early, or say that they are longer. */

@@ -5,6 +5,22 @@
 
 #include "base/number.h"
 
+/* Lists grow to what is added at once, and to what the largest mesh has. */
+TEST(lists_have_an_end) {
+  static const double many[1000] = {1, 2};
+  const size_t most = 3 * (size_t)ABBE_MESH_MAX_FACES;
+  abbe_mesh_list list = {0};
+  assert_true(abbe_mesh_list_add(&list, 1000, sizeof *many, many));
+  assert_true(list.capacity >= 1000);
+  assert_memory_equal(list.item, many, sizeof many);
+  assert_false(abbe_mesh_list_add(&list, most - 999, sizeof *many, many));
+  assert_int_equal(list.count, 1000);
+  free(list.item);
+  abbe_mesh mesh;
+  REFUSED(ABBE_UNSUPPORTED, "stone: meshes are read from .obj, .ply",
+          abbe_mesh_load("stone", ABBE_NORMALS_FLAT, &mesh, NULL, &error));
+}
+
 typedef struct text {
   char data[1 << 16];
   size_t size;

@@ -1,5 +1,7 @@
 #include "tests/scenes/import/mesh/meshes.h"
 
+#include "base/file.h"
+
 #include <unistd.h>
 
 #define POINTS "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\n"
@@ -11,6 +13,7 @@ TEST(tetrahedra_are_read) {
       "s 1\r\nf -4 -2 -3\r\nf -4 -3 -1\r\nf -4 -1 -2\r\nf -3 -2 -1",
       "  v\t0 0 \\\n 0\nv 1. 0e0 -0 0.5 0.5 1\nv 0 2.0 0 1\n\n\nvt 0.5\nv 0 0 +3\n"
       "f 1/1 3/1 \\\r\n 2/1\nf 1/1/ 2/ 4\nf 1// 4 3\nfo 2 3 4\nl 1 2\np 3\nf 1 2\nf 3\n",
+      "v 0 0 0 # x \rv 1 \\\r0 0\rv 0 2 0 \rv 0 0 3\rf 1 3 2\rf 1 2 4\rf 1 4 3\rf 2 3 4 \\\r",
   };
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     abbe_mesh m;
@@ -69,7 +72,7 @@ TEST(what_is_not_there_is_not_taken) {
 
 TEST(a_material_s_faces_are_read_alone) {
   static const char text[] =
-      POINTS "f 1 2 3\nusemtl clear glass \nf 1 2 3 4\nusemtl clear\nf 1 2 3\n";
+      POINTS "f 1 2 3\nusemtl clear glass \t\nf 1 2 3 4\nusemtl clear\nf 1 2 3\n";
   abbe_mesh m;
   OK(test_read(abbe_obj_read, "t.obj", "clear glass", text, strlen(text), &m));
   assert_int_equal(m.face_count, 2);
@@ -94,6 +97,34 @@ TEST(files_of_materials_are_known) {
   for (size_t i = 0; i < sizeof names / sizeof *names; at += strlen(at) + 1, i++)
     assert_string_equal(at, names[i]);
   unlink("t_names.obj");
+}
+
+/* They lie beside the mesh; UTF-16 that ends within a letter is none. */
+TEST(files_of_materials_lie_beside_the_mesh) {
+  char folder[] = "/tmp/abbe-test-obj-XXXXXX";
+  assert_non_null(mkdtemp(folder));
+  const char *path = printed("%s/t.obj", folder);
+  static const char text[] = "mtllib a.mtl\n" POINTS "f 1 2 3\n";
+  OK(abbe_file_write(path, text, sizeof text - 1, &error));
+  FREED char *others = NULL;
+  MADE(abbe_mesh, m, abbe_mesh_load(path, ABBE_NORMALS_FLAT, &m, &others, &error));
+  assert_string_equal(others, printed("%s/a.mtl", folder));
+  assert_string_equal(others + strlen(others) + 1, "");
+  assert_int_equal(unlink(path) + rmdir(folder), 0);
+  abbe_mesh none;
+  assert_int_equal(test_read(abbe_obj_read, "t.obj", NULL, "\xff\xfev\0 \0\0", 7, &none),
+                   ABBE_PARSE);
+}
+
+/* What is not finite is no normal and no texture coordinate: zeros stand for it. */
+TEST(normals_and_uv_are_finite) {
+  static const char text[] = POINTS "vn 0 0 1e999\nvt 1e999 2\nf 1/1/1 2/1/1 3/1/1\n";
+  MADE(abbe_mesh, m, test_read(abbe_obj_read, "t.obj", NULL, text, strlen(text), &m));
+  for (size_t v = 0; v < m.vertex_count; v++)
+    for (int k = 0; k < 3; k++) {
+      assert_near(m.normal[v][k], 0, 0);
+      if (k < 2) assert_near(m.uv[v][k], 0, 0);
+    }
 }
 
 TEST(what_is_wrong_is_said) {

@@ -140,12 +140,81 @@ TEST(texts_of_faces_are_read) {
       "ply \n\t comment a\n\n \t\n format\tascii  1.0 \t\n element \tvertex\t4\n"
       "\tproperty\tfloat x\n property  float\ty \nproperty float \t z\nelement face 4\n"
       " property   list uchar \t int vertex_indices \n\tend_header\t \n" BODY,
+      "ply\nformat ascii 1.0\nelement nothing 0\nelement vertex 4\nproperty float32 x\n"
+      "property float64 y\nproperty int8 z\n" FACE_LIST "0\t0 0\n1 0 0\n0 2 0\n0 0 3\n"
+      "3\t0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n",
   };
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     abbe_mesh m;
     OK(parse(texts[i], strlen(texts[i]), &m));
     assert_tetrahedron(&m, 1, 0, 0);
   }
+}
+
+/* Lines of a header are as long as programs make them, where nothing is read from them. */
+TEST(comments_may_be_long) {
+  static const char *const begins[] = {"comment ", "obj_info ", "element "};
+  static char text[4096];
+  for (int i = 0; i < 3; i++) {
+    abbe_mesh m;
+    char *at = text + sprintf(text, "ply\nformat ascii 1.0\n%s", begins[i]);
+    memset(at, 'x', 1000);
+    strcpy(at + 1000, "\nelement vertex 4\nproperty float x\nproperty float y\n"
+                      "property float z\n" FACE_LIST BODY);
+    const abbe_result result = parse(text, strlen(text), &m);
+    assert_int_equal(result, i < 2 ? ABBE_OK : ABBE_PARSE);
+    if (i < 2) assert_tetrahedron(&m, 1, 0, 0);
+    if (i == 2) assert_contains(last_error.text, "line 3 is none of a PLY header");
+  }
+}
+
+/* As many elements and properties as a header may have, and one more; and lines without end. */
+TEST(headers_have_an_end) {
+  static const struct {
+    int elements, properties;
+    const char *words;
+  } rows[] = {{32, 1, NULL}, {33, 1, "line 67 is"}, {1, 128, NULL}, {1, 129, "line 132 is"}};
+  static char text[1 << 17];
+  abbe_mesh m;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char *at = text + sprintf(text, "ply\nformat ascii 1.0\n");
+    for (int e = 0; e < rows[i].elements; e++) {
+      at += sprintf(at, "element e%d 0\n", e);
+      for (int p = 0; p < rows[i].properties; p++) at += sprintf(at, "property char p%d\n", p);
+    }
+    strcpy(at, "end_header\n");
+    assert_int_equal(parse(text, strlen(text), &m), rows[i].words ? ABBE_PARSE : ABBE_GEOMETRY);
+    assert_contains(last_error.text, rows[i].words ? rows[i].words : "no faces were read");
+  }
+  strcpy(text, "ply\n");
+  memset(text + 4, '\n', 70000);
+  assert_int_equal(parse(text, 70004, &m), ABBE_PARSE);
+  assert_contains(last_error.text, "has no end_header");
+}
+
+/* Bytes with a sign; a face's own texture coordinates go before those of its vertices. */
+TEST(bytes_have_signs) {
+  static const char head[] =
+      "ply\r\nformat binary_little_endian 1.0\r\nelement vertex 3\r\nproperty char x\r\n"
+      "property char y\r\nproperty char z\r\nproperty uchar u\r\nproperty uchar v\r\n"
+      "element face 1\r\nproperty list uchar uchar vertex_index\r\n"
+      "property list uchar uchar texcoord\r\nend_header\r";
+  static const char body[] = {-1, 0, 0, 5, 5, 1, 0, 0, 5, 5, 0, 1, 0,
+                              5,  5, 3, 0, 1, 2, 6, 1, 2, 3, 4, 5, 6};
+  char data[600];
+  memcpy(data, head, sizeof head - 1);
+  memcpy(data + sizeof head - 1, body, sizeof body);
+  /* after the last return the body begins, for it does not go on with a line feed */
+  MADE(abbe_mesh, m, parse(data, sizeof head - 1 + sizeof body, &m));
+  assert_near(m.position[m.face[0][0]][0], -1, 0);
+  for (int k = 0; k < 3; k++) {
+    assert_near(m.uv[m.face[0][k]][0], 1 + 2 * k, 0);
+    assert_near(m.uv[m.face[0][k]][1], 2 + 2 * k, 0);
+  }
+  /* where the header ends the file, nothing of it is there */
+  abbe_mesh none;
+  assert_int_equal(parse(head, sizeof head - 1, &none), ABBE_PARSE);
+  assert_contains(last_error.text, "in element 'vertex' 1 of 3");
 }
 
 /* The ending of the header's lines is that of its first: the body may begin with either byte. */
@@ -241,6 +310,19 @@ TEST(what_is_wrong_is_said) {
       {"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nend_header\n0\n1\nnan\n",
        "in element 'vertex' 3 of 3", ABBE_PARSE},
       {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n", "no end_header", ABBE_PARSE},
+      {FACES("property list uchar float texcoord\n") "3 0 1 2 5 0 0 1 1 0\n",
+       "another number of texture coordinates", ABBE_PARSE},
+      {FACES("property list uchar float texcoord\n") "3 0 1 2 6 0 0\n", "in element 'face' 1 of 1",
+       ABBE_PARSE},
+      {FACES("property list uchar float texcoord\n") "3 0 1 2 6 0\n", "in element 'face' 1 of 1",
+       ABBE_PARSE},
+      {"ply\nformat\nend_header\n", "line 2 is none of", ABBE_PARSE},
+      {"ply\nformat asciii 1.0\nend_header\n", "line 2 is none of", ABBE_PARSE},
+      {"ply\nformat askii 1.0\nend_header\n", "line 2 is none of", ABBE_PARSE},
+      {"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float u\n"
+       "property float v\nelement face 1\nproperty list uchar int vertex_index\nend_header\n"
+       "0 0 0\n1 0 0\n2 0 0\n3 0 1 5\n",
+       "face 1 names vertex 5", ABBE_GEOMETRY},
       {PLAIN "4 0 1 2\n", "it ends", ABBE_PARSE},
       {PLAIN "-1 0 1 2\n", "it ends", ABBE_PARSE},
       {PLAIN "3 0 1 x\n", "something else than a number", ABBE_PARSE},

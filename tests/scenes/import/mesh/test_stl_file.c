@@ -43,7 +43,8 @@ TEST(texts_are_read) {
   } ways[] = {{false, "", "\n", "endsolid own"},
               {true, "", "\n", "endsolid own\n"},
               {false, "  \n ", "\r\n", "endsolid\r\n\r\n"},
-              {false, "", "\r", "end solid own\r"}};
+              {false, "", "\r", "end solid own\r"},
+              {false, "", "\n", "endsolid"}};
   for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
     abbe_mesh m;
     char text[4096];
