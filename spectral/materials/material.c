@@ -94,56 +94,64 @@ static abbe_result check_range(const abbe_material *m, abbe_error *error) {
   return check_points(m, m->extraordinary.table, "those of its extraordinary index", error);
 }
 
-/* A formula that has a pole or no root inside its own range was copied wrongly, most often with
- * coefficients in another unit. */
-static abbe_result check_curve(const abbe_material *m, const abbe_dispersion *d, const char *which,
-                               abbe_error *error) {
-  enum { STEPS = 1000 };
-  for (int i = 0; i <= STEPS; i++) {
-    double lambda_nm = m->min_nm + (m->max_nm - m->min_nm) * i / STEPS;
-    if (!isnan(abbe_dispersion_n(d, lambda_nm))) continue;
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "%s: its %s%s formula has no real index at %g nm, inside its range; "
-                          "check the coefficients (wavelengths in micrometres)",
-                          m->name, which, abbe_dispersion_model_name(d->model), lambda_nm);
-  }
-  return ABBE_OK;
+/* The material's real indices, in the order in which those of a crystal ascend; returns how many.
+ */
+static int indices_of(const abbe_material *m, const abbe_dispersion *d[3], const char *which[3]) {
+  const bool three = abbe_material_is_biaxial(m);
+  d[0] = three ? &m->outer[0] : &m->dispersion;
+  which[0] = three ? "alpha's " : "";
+  d[1] = three ? &m->dispersion : &m->extraordinary;
+  which[1] = three ? "" : "extraordinary ";
+  d[2] = &m->outer[1];
+  which[2] = "gamma's ";
+  return three ? 3 : abbe_material_is_uniaxial(m) ? 2 : 1;
 }
 
-/* Indices of a crystal are such as stones have, and three ascend at every wavelength. A record
- * without a range is judged where light may be traced, for a formula of Cauchy has no end at 0. */
-static abbe_result check_order(const abbe_material *m, abbe_error *error) {
+/* A formula that has a pole or no root inside its own range was copied wrongly, most often with
+ * coefficients in another unit. Indices of a crystal are such as stones have, and three ascend at
+ * every wavelength, which is judged where `stones`. */
+static abbe_result check_curves(const abbe_material *m, double from, double to, bool stones,
+                                abbe_error *error) {
   enum { STEPS = 1000 };
-  const bool three = abbe_material_is_biaxial(m);
-  const double from = fmax(m->min_nm, 100), to = fmax(from, fmin(m->max_nm, 10000));
+  const abbe_dispersion *d[3];
+  const char *which[3];
+  const int count = indices_of(m, d, which);
   for (int i = 0; i <= STEPS; i++) {
-    const double nm = from + (to - from) * i / STEPS, b = abbe_dispersion_n(&m->dispersion, nm),
-                 a = three ? abbe_dispersion_n(&m->outer[0], nm) : b,
-                 c = abbe_dispersion_n(three ? &m->outer[1] : &m->extraordinary, nm);
-    if (three && (a > b || b > c))
+    const double nm = from + (to - from) * i / STEPS;
+    double n[3] = {0};
+    for (int k = 0; k < count; k++) {
+      n[k] = abbe_dispersion_n(d[k], nm);
+      if (isnan(n[k]))
+        return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                              "%s: its %s%s formula has no real index at %g nm, inside its range; "
+                              "check the coefficients (wavelengths in micrometres)",
+                              m->name, which[k], abbe_dispersion_model_name(d[k]->model), nm);
+    }
+    if (!stones) continue;
+    if (count == 3 && (n[0] > n[1] || n[1] > n[2]))
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "%s: its indices are to ascend, alpha <= beta <= gamma; at %g nm they "
                             "are %.6g, %.6g, %.6g",
-                            m->name, nm, a, b, c);
-    if (!(fmin(a, c) > 0 && fmax(a, c) <= 10))
+                            m->name, nm, n[0], n[1], n[2]);
+    const double last = n[count - 1];
+    if (!(n[0] > 0 && last > 0 && n[0] <= 10 && last <= 10))
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "%s: an index of a crystal is above 0 and at most 10; at %g nm they "
                             "are %.6g and %.6g",
-                            m->name, nm, a, c);
+                            m->name, nm, n[0], last);
   }
   return ABBE_OK;
 }
 
+/* A crystal's record without a range is judged where light may be traced, for a formula of Cauchy
+ * has no end at 0. */
 static abbe_result check_index(const abbe_material *m, abbe_error *error) {
+  const bool crystal = abbe_material_is_crystal(m);
+  const double low = fmax(m->min_nm, fmin(m->max_nm, 100)), high = fmax(low, fmin(m->max_nm, 1e4));
   if (abbe_material_is_conductor(m)) return ABBE_OK;
-  ABBE_TRY(check_curve(m, &m->dispersion, "", error));
-  if (abbe_material_is_biaxial(m)) {
-    ABBE_TRY(check_curve(m, &m->outer[0], "alpha's ", error));
-    ABBE_TRY(check_curve(m, &m->outer[1], "gamma's ", error));
-  }
-  if (abbe_material_is_uniaxial(m))
-    ABBE_TRY(check_curve(m, &m->extraordinary, "extraordinary ", error));
-  return abbe_material_is_crystal(m) ? check_order(m, error) : ABBE_OK;
+  if (!crystal || low > m->min_nm || high < m->max_nm)
+    ABBE_TRY(check_curves(m, m->min_nm, m->max_nm, false, error));
+  return crystal ? check_curves(m, low, high, true, error) : ABBE_OK;
 }
 
 /* All of three indices are there and real, and there is no second of another kind. */
