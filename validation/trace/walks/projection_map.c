@@ -4,12 +4,13 @@
 #include "base/thread/watch.h"
 #include "validation/trace/transport/lamp_place.h"
 #include "validation/trace/transport/random.h"
+#include "validation/trace/walks/ray_batch.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { TRIALS = 8, MAX_SPLITS = 16 };
+enum { TRIALS = 8, TOGETHER = ABBE_RAY_LANES / TRIALS /* cells of a packet */ };
 /* Share of photons for a cell whose trials meet no refractor, against one whose trials all do. */
 static const double least_share = 0.03;
 
@@ -263,38 +264,49 @@ static void take_marks(void *user, patch p) {
 
 /* ---- shares ---- */
 
-static double try_cell(const abbe_geometry *g, const abbe_projection_map *a,
-                       const abbe_projection_map_cell *cell, uint32_t index, double *flux) {
-  double share = 0;
-  *flux = 0;
-  for (uint32_t i = 0; i < TRIALS; i++) {
-    float r[4], o[3], d[3];
-    abbe_random4(index, i, 0x61696d, 0, r);
-    r[0] = ((float)(i % 4) + r[0]) / 4;
-    r[1] = ((float)(i / 4) + r[1]) / 2;
-    double f = (double)abbe_projection_map_ray(a, cell, r, r + 2, o, d);
-    abbe_hit hit;
-    unsigned mask = ABBE_GEOMETRY_ALL;
-    bool met = f > 0 && abbe_geometry_hit(g, mask, o, d, INFINITY, &hit) &&
-               (hit.surface->kind & ABBE_GEOMETRY_SPECULAR) != 0;
-    *flux += f / TRIALS;
-    share += met ? f / TRIALS : 0;
+/* What `count` cells, of which the first is number `index`, are worth to photons, and the flux of
+ * each. */
+static void try_cells(const abbe_geometry *g, const abbe_projection_map *a,
+                      const abbe_projection_map_cell *cell, size_t count, uint32_t index,
+                      double share[TOGETHER], double flux[TOGETHER]) {
+  RTC_ALIGN(64) struct RTCRayHit16 packet;
+  size_t rays = 0, of[ABBE_RAY_LANES];
+  double watts[ABBE_RAY_LANES];
+  memset(&packet, 0, sizeof packet);
+  for (size_t c = 0; c < count; c++) {
+    share[c] = flux[c] = 0;
+    for (uint32_t i = 0; i < TRIALS; i++) {
+      float r[4], o[3], d[3];
+      abbe_random4(index + (uint32_t)c, i, 0x61696d, 0, r);
+      r[0] = ((float)(i % 4) + r[0]) / 4;
+      r[1] = ((float)(i / 4) + r[1]) / 2;
+      const double f = (double)abbe_projection_map_ray(a, &cell[c], r, r + 2, o, d) / TRIALS;
+      if (!(f > 0)) continue;
+      abbe_ray_put(&packet, rays, o, d);
+      watts[rays] = f;
+      of[rays++] = c;
+      flux[c] += f;
+    }
   }
-  double whole = (double)a->power * (double)a->measure;
-  return fmax(share, least_share * whole);
+  abbe_ray_prepare(&packet, 1);
+  abbe_ray_reset(&packet);
+  if (rays > 0) abbe_embree_intersect_16(g->embree, &packet, rays, true);
+  for (size_t k = 0; k < rays; k++) {
+    const unsigned id = packet.hit.geomID[k];
+    if (id != RTC_INVALID_GEOMETRY_ID && (g->surface[id].kind & ABBE_GEOMETRY_SPECULAR) != 0)
+      share[of[k]] += watts[k];
+  }
+  const double whole = (double)a->power * (double)a->measure;
+  for (size_t c = 0; c < count; c++) share[c] = fmax(share[c], least_share * whole);
 }
 
-static uint32_t spread(uint32_t x) {
-  x = (x | x << 8) & 0x00ff00ff;
-  x = (x | x << 4) & 0x0f0f0f0f;
-  x = (x | x << 2) & 0x33333333;
-  return (x | x << 1) & 0x55555555;
-}
-
-static int by_curve(const void *a, const void *b) {
-  const abbe_projection_map_cell *p = a, *q = b;
-  uint32_t i = spread(p->x) | spread(p->y) << 1, j = spread(q->x) | spread(q->y) << 1;
-  return (i > j) - (i < j);
+/* Every second bit of x. */
+static uint32_t gather_bits(uint32_t x) {
+  x &= 0x55555555;
+  x = (x | x >> 1) & 0x33333333;
+  x = (x | x >> 2) & 0x0f0f0f0f;
+  x = (x | x >> 4) & 0x00ff00ff;
+  return (x | x >> 8) & 0x0000ffff;
 }
 
 static float angle_of(float versine) {
@@ -326,18 +338,21 @@ static abbe_result keep_cells(const abbe_geometry *g, const marks *m, abbe_proje
   a->cell = calloc(marked + 1, sizeof *a->cell);
   if (a->cell == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu cells of light", marked);
-  for (int y = 0; y < ABBE_PROJECTION_MAP_SIDE; y++)
-    for (int x = 0; x < ABBE_PROJECTION_MAP_SIDE; x++) {
-      abbe_projection_map_cell cell = {.x = (uint16_t)x, .y = (uint16_t)y};
-      if (m->at[y][x] && !dark(a, &cell)) a->cell[a->count++] = cell;
+  /* along a Z-order curve, so that photons that follow one another are neighbours */
+  for (uint32_t i = 0; i < ABBE_PROJECTION_MAP_SIDE * ABBE_PROJECTION_MAP_SIDE; i++) {
+    const uint16_t x = (uint16_t)gather_bits(i), y = (uint16_t)gather_bits(i >> 1);
+    const abbe_projection_map_cell cell = {.x = x, .y = y};
+    if (m->at[y][x] && !dark(a, &cell)) a->cell[a->count++] = cell;
+  }
+  double total = 0, share[TOGETHER], flux[TOGETHER];
+  for (size_t i = 0; i < a->count && (i % ASKED != 0 || abbe_watch_goes_on()); i += TOGETHER) {
+    const size_t count = a->count - i < TOGETHER ? a->count - i : TOGETHER;
+    try_cells(g, a, &a->cell[i], count, (uint32_t)i, share, flux);
+    for (size_t c = 0; c < count; c++) {
+      a->cell[i + c].share = (float)share[c];
+      a->reach += flux[c];
+      total += share[c];
     }
-  qsort(a->cell, a->count, sizeof *a->cell, by_curve);
-  double total = 0;
-  for (size_t i = 0; i < a->count && (i % ASKED != 0 || abbe_watch_goes_on()); i++) {
-    double flux, share = try_cell(g, a, &a->cell[i], (uint32_t)i, &flux);
-    a->cell[i].share = (float)share;
-    a->reach += flux;
-    total += share;
   }
   for (size_t i = 0; i < a->count; i++)
     a->cell[i].share = (float)((double)a->cell[i].share / total);
