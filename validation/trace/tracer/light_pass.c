@@ -107,11 +107,15 @@ typedef struct splat {
 } splat;
 
 /* As seen from a place on the lens, which the photon's own place chooses. */
-static abbe_trace_camera camera_for(const abbe_tracer *t, const abbe_photon_hit *l) {
+static const abbe_trace_camera *camera_for(const abbe_tracer *t, const abbe_photon_hit *l,
+                                           abbe_trace_camera *on_lens) {
   uint32_t of[3], bits[4];
+  if (!(t->camera.lens > 0)) return &t->camera;
   memcpy(of, l->p, sizeof of);
   abbe_random_bits(of[0], of[1], of[2], t->desc.seed ^ (0x6c656e73u + l->step), bits);
-  return abbe_trace_camera_at(&t->camera, abbe_random_float(bits[0]), abbe_random_float(bits[1]));
+  *on_lens =
+      abbe_trace_camera_at(&t->camera, abbe_random_float(bits[0]), abbe_random_float(bits[1]));
+  return on_lens;
 }
 
 /* The ray from the photon to the camera in lane k of the packet; false where it cannot be seen. */
@@ -119,8 +123,9 @@ static bool prepare_splat(const abbe_tracer *t, const abbe_photon_hit *l, struct
                           size_t k, splat *out) {
   float d[3], distance, per_pixel, o[3];
   size_t pixel;
-  const abbe_trace_camera camera = camera_for(t, l);
-  if (!abbe_trace_camera_pixel(&camera, l->p, &pixel, &distance, d, &per_pixel)) return false;
+  abbe_trace_camera on_lens;
+  const abbe_trace_camera *camera = camera_for(t, l, &on_lens);
+  if (!abbe_trace_camera_pixel(camera, l->p, &pixel, &distance, d, &per_pixel)) return false;
   abbe_hit hit;
   for (int i = 0; i < 3; i++) d[i] = -d[i];
   abbe_geometry_place(&t->geometry.surface[l->surface], l->face, l->u, l->v, l->p, d, 0, &hit);
@@ -129,7 +134,7 @@ static bool prepare_splat(const abbe_tracer *t, const abbe_photon_hit *l, struct
   float metres = distance * (float)t->geometry.unit;
   *out = (splat){
       .hit = l, .pixel = pixel, .value = l->flux * fabsf(facing) * per_pixel / (metres * metres)};
-  memcpy(out->eye, camera.eye, sizeof out->eye);
+  memcpy(out->eye, camera->eye, sizeof out->eye);
   abbe_geometry_leave(&hit, d, o);
   packet->org_x[k] = o[0];
   packet->org_y[k] = o[1];

@@ -265,6 +265,7 @@ static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
     t->eye.physics.energy_share = t->desc.physics.eye_share;
   }
   if (!shows) return ABBE_OK;
+  abbe_eye_walk_prepare(&t->eye);
   for (size_t l = 0; l < t->sampling.lights; l++)
     t->landed_room += abbe_tracer_most_hits(t, l, t->photons[l]);
   t->landed = malloc((t->landed_room + 1) * sizeof *t->landed);

@@ -44,14 +44,15 @@ static uint32_t step_of(const abbe_spectral_sampling *s, double nm, float *withi
   return (uint32_t)low;
 }
 
-/* What light of the wavelengths around the path's own is weakened more than it on that length, and
- * turned less where haze turns it at the end. */
-static void weigh_beside(const abbe_eye_context *c, abbe_eye_path *p, float length, bool turns) {
+/* What light of the wavelengths around the path's own is weakened more than it on that length in
+ * the medium, and turned less where haze turns it at the end. */
+static void weigh_beside(const abbe_eye_context *c, abbe_eye_path *p, int medium, float length,
+                         bool turns) {
   const abbe_eye_walk *w = c->w;
   const abbe_media *m = w->media;
-  const int medium = abbe_media_of(p->inside);
   if (!p->dispersed || w->grid == NULL || (medium < 0 && !abbe_haze_is_coloured(&m->haze, medium)))
     return;
+  p->weighed = true;
   const float whole = extinction_at(m, medium, p, p->step, p->within);
   const float off = turns ? abbe_haze_scattering(&m->haze, medium, p->step, p->within) : 1;
   const double own = abbe_spectral_sampling_lambda(w->sampling, p->step, p->within);
@@ -66,10 +67,23 @@ static void weigh_beside(const abbe_eye_context *c, abbe_eye_path *p, float leng
   }
 }
 
+void abbe_eye_settle(const abbe_eye_context *c, abbe_eye_path *p) {
+  if (p->owed > 0) weigh_beside(c, p, p->owed_in, p->owed, false);
+  p->owed = 0;
+}
+
 void abbe_eye_weaken(const abbe_eye_context *c, abbe_eye_path *p, float length) {
+  const abbe_media *m = c->w->media;
   const int medium = abbe_media_of(p->inside);
-  p->share *= expf(-length * extinction_at(c->w->media, medium, p, p->step, p->within));
-  weigh_beside(c, p, length, false);
+  p->share *= expf(-length * extinction_at(m, medium, p, p->step, p->within));
+  if (abbe_haze_is(&m->haze) ||
+      m->pleochroism != NULL) { /* its depths depend on more than length */
+    weigh_beside(c, p, medium, length, false);
+    return;
+  }
+  if (p->owed_in != medium) abbe_eye_settle(c, p);
+  p->owed_in = medium;
+  p->owed += length;
 }
 
 /* By the share that is turned on all of the way, at a place that the scattering draws; roulette
@@ -98,7 +112,7 @@ bool abbe_eye_turn(const abbe_eye_context *c, abbe_eye_path *p, float length,
   abbe_eye_random4(c, p->id ^ 0x7475726eu, p->steps, random);
   const float t = abbe_haze_place(off, length, random[0], &density);
   turned->share *= expf(-t * (whole - off));
-  weigh_beside(c, turned, t, true);
+  weigh_beside(c, turned, medium, t, true);
   for (int k = 0; k < 3; k++) turned->o[k] += t * p->d[k];
   abbe_haze_turn(h, medium, p->d, random[1], random[2], turned->d);
   turned->wave = random[3] < 0.5f;
@@ -134,6 +148,7 @@ bool abbe_eye_glow(const abbe_eye_context *c, const abbe_eye_path *p, float leng
   from->shown = p->glows ? p->shown : p->step;
   from->glows = true;
   memset(from->beyond, 0, sizeof from->beyond);
+  from->weighed = false;
   from->lobe = 0;
   memset(from->stokes, 0, sizeof from->stokes);
   from->steps++;

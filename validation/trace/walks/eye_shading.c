@@ -10,6 +10,26 @@
 enum { STRAIGHT_SAMPLES = 4 };
 static const float inverse_pi = 0.318309886f;
 
+void abbe_eye_walk_band(const abbe_eye_walk *w, uint32_t bands, uint32_t b, float out[3]) {
+  const uint32_t size = (uint32_t)w->sampling->steps / bands, parts = ABBE_EYE_PARTS / bands;
+  for (int k = 0; k < 3; k++) {
+    out[k] = 0;
+    for (uint32_t i = b * size; i < (b + 1) * size; i += size / parts)
+      out[k] += w->colour[i][k] / (float)parts;
+  }
+}
+
+void abbe_eye_walk_prepare(abbe_eye_walk *w) {
+  const uint32_t steps = (uint32_t)w->sampling->steps;
+  for (uint32_t b = 0; b < ABBE_EYE_MIRRORED; b++)
+    abbe_eye_walk_band(w, ABBE_EYE_MIRRORED, b, w->mirrored[b]);
+  for (int k = 0; k < 3; k++) {
+    w->sampled[k] = 0;
+    for (uint32_t i = 0; i < steps; i += steps / ABBE_EYE_PARTS)
+      w->sampled[k] += w->colour[i][k] / ABBE_EYE_PARTS;
+  }
+}
+
 /* Radiance of a light's spectrum times share; reflected NULL: all of it. */
 static void add_light(const abbe_eye_context *c, const abbe_eye_path *p, size_t light, float share,
                       const abbe_reflected *reflected) {

@@ -24,8 +24,11 @@ typedef struct abbe_eye_path {
   float within;
   float beyond[ABBE_EYE_BEYOND]; /* optical depths at wavelengths from one window of gathers below
                                     its own, evenly, to one above, less its own depth */
-  bool glows;                    /* it has gone back from a glow to what excites it: */
-  uint32_t shown;                /* the step in which the camera sees that */
+  bool weighed;                  /* not all of them are 0 */
+  float owed;                    /* its way in owed_in that is not in beyond yet */
+  int owed_in;
+  bool glows;     /* it has gone back from a glow to what excites it: */
+  uint32_t shown; /* the step in which the camera sees that */
   abbe_media_set inside;
   float carried; /* matched: what a splitting path would carry */
   uint32_t walls, steps, id;
@@ -71,6 +74,8 @@ bool abbe_eye_trace(const abbe_eye_context *context, const abbe_eye_path *path, 
 
 /* Takes what the medium absorbs and scatters of the path on its way of that length. */
 void abbe_eye_weaken(const abbe_eye_context *context, abbe_eye_path *path, float length);
+/* Puts the way that is owed into beyond, which photons alone ask for: most paths meet none. */
+void abbe_eye_settle(const abbe_eye_context *context, abbe_eye_path *path);
 
 /* What a refractor that scatters more than once turns of the path on its way of that length, before
  * it is weakened: as *turned where that goes on. Shares of both branches are those of what came. */

@@ -7,9 +7,7 @@
 #include <stddef.h>
 #include <string.h>
 
-/* A mirror image is tinted by so many wavelengths, a film's by more; each stands for its share of
- * all parts of the spectrum. */
-enum { MIRROR_BANDS = 8, FILM_BANDS = 64, ALL_PARTS = 128 };
+enum { FILM_BANDS = 64 }; /* that tint a film's mirror image */
 enum { HEROES = 4, MAX_STEPS = 10000, BRANCHES_ROOM = 16, TURNS_ROOM = 64, IDS = 8 };
 /* Golden ratios of three dimensions, 2^32 each: places of a pixel's samples and their wavelengths
  * [Roberts2018]. */
@@ -298,7 +296,9 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
 
 /* Follows a path that may be inside, and all that it splits into, to their ends. */
 static void follow(const abbe_eye_context *c, const abbe_eye_path *first) {
-  branches b = {.count = 1, .least = first->share * 0.02f};
+  branches b; /* of which most is never used */
+  b.count = 1;
+  b.least = first->share * 0.02f;
   b.path[0] = *first;
   while (b.count > 0) {
     abbe_eye_path p = b.path[--b.count];
@@ -320,23 +320,18 @@ static void follow_mirror(const abbe_eye_context *c, const abbe_eye_path *first,
     p.share *= share * way[2];
   } else {
     float sum[3] = {0};
-    const uint32_t bands = x->face.film < 0 ? MIRROR_BANDS : FILM_BANDS, parts = ALL_PARTS / bands;
-    const uint32_t steps = (uint32_t)w->sampling->steps, size = steps / bands;
+    const bool bare = x->face.film < 0;
+    const uint32_t bands = bare ? ABBE_EYE_MIRRORED : FILM_BANDS;
+    const uint32_t size = (uint32_t)w->sampling->steps / bands;
     for (uint32_t b = 0; b < bands; b++) {
       const float part = reflectance_at(c, x, b * size + size / 2, 0, way), share = part * way[2];
-      for (int k = 0; k < 3; k++) {
-        float colour = 0;
-        for (uint32_t i = b * size; i < (b + 1) * size; i += size / parts)
-          colour += w->colour[i][k] / (float)parts;
-        sum[k] += share * colour / (float)bands;
-      }
+      float of_film[3];
+      if (!bare) abbe_eye_walk_band(w, bands, b, of_film);
+      const float *colour = bare ? w->mirrored[b] : of_film;
+      for (int k = 0; k < 3; k++) sum[k] += share * colour[k] / (float)bands;
     }
-    /* the sampled colours' own sum, so that a constant reflectance has no tint */
-    for (int k = 0; k < 3; k++) {
-      float all = 0;
-      for (uint32_t i = 0; i < steps; i += size / parts) all += w->colour[i][k] / ALL_PARTS;
-      p.tint[k] *= sum[k] / all;
-    }
+    /* by the sampled colours' own sum, so that a constant reflectance has no tint */
+    for (int k = 0; k < 3; k++) p.tint[k] *= sum[k] / w->sampled[k];
   }
   p.carried = reflectance_at(c, x, (uint32_t)w->sampling->steps / 2, 0, way);
   send(&p, hit, x, true, way[0], way[1]);
@@ -478,12 +473,17 @@ void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
                        .inside = w->inside,
                        .carried = 1,
                        .id = i * IDS};
-    abbe_eye_random_bits(&c, i, 0x6c656e73u, lens);
-    const abbe_trace_camera camera =
-        abbe_trace_camera_at(w->camera, abbe_random_float(lens[0]), abbe_random_float(lens[1]));
-    memcpy(p.o, camera.eye, sizeof p.o);
+    const abbe_trace_camera *camera = w->camera;
+    abbe_trace_camera on_lens;
+    if (camera->lens > 0) {
+      abbe_eye_random_bits(&c, i, 0x6c656e73u, lens);
+      on_lens =
+          abbe_trace_camera_at(w->camera, abbe_random_float(lens[0]), abbe_random_float(lens[1]));
+      camera = &on_lens;
+    }
+    memcpy(p.o, camera->eye, sizeof p.o);
     /* multiples of golden ratios, shifted */
-    walk_sample(&c, &camera, &p, column + abbe_random_float(i * golden[0] + shift[0]),
+    walk_sample(&c, camera, &p, column + abbe_random_float(i * golden[0] + shift[0]),
                 row + abbe_random_float(i * golden[1] + shift[1]), i * golden[2] + shift[2]);
   }
 }

@@ -70,6 +70,9 @@ void abbe_photon_grid_gather(const abbe_photon_grid *grid, const float p[3], flo
 #define ABBE_EYE_LEAST_BRANCH 0.4f
 
 /* All that a walk reads; nothing is written. */
+/* A mirror image is tinted by so many wavelengths, each for its share of all parts. */
+enum { ABBE_EYE_MIRRORED = 8, ABBE_EYE_PARTS = 128 };
+
 typedef struct abbe_eye_walk {
   const abbe_geometry *geometry;
   const abbe_media *media;
@@ -94,7 +97,14 @@ typedef struct abbe_eye_walk {
   float shaft_radius;           /* radius of their gather, frame */
   float shaft_near; /* as far as this the camera gathers those that it sees straight, by a quarter
                        of the radius, frame */
+  float mirrored[ABBE_EYE_MIRRORED][3]; /* colours of a mirror image's bands, and of all parts: */
+  float sampled[3];
 } abbe_eye_walk;
+
+/* The mean colour of band number b of so many. */
+void abbe_eye_walk_band(const abbe_eye_walk *walk, uint32_t bands, uint32_t b, float out[3]);
+/* Fills in mirrored and sampled; once all else is there. */
+void abbe_eye_walk_prepare(abbe_eye_walk *walk);
 
 typedef struct abbe_eye_sample {
   float rgb[3];     /* radiance, W/(m2 sr), white Y = 1 */

@@ -29,14 +29,15 @@ typedef struct abbe_light_path {
   float y;          /* Y of a watt, for the ledger */
   float carried;    /* matched: share of the light that a splitting path would carry */
   float chance[ABBE_PHOTON_SPLITS];
-  uint16_t steps, inner; /* interfaces met; matched: of them, after the first */
-  bool begun;            /* has met its first interface */
-  uint8_t wave;          /* in a crystal: which of its two */
-  float stokes[3];       /* of polarised light, outside of crystals */
-  bool turned, frosted;  /* by haze in a refractor; at a rough face */
-  bool shown;            /* its first interface was one */
-  bool glows;            /* it is of the glow of something */
+  uint16_t steps, inner;        /* interfaces met; matched: of them, after the first */
+  uint8_t wave;                 /* in a crystal: which of its two */
+  bool begun : 1;               /* has met its first interface */
+  bool turned : 1, frosted : 1; /* by haze in a refractor; at a rough face */
+  bool shown : 1;               /* its first interface was one */
+  bool glows : 1;               /* it is of the glow of something */
+  float stokes[3];              /* of polarised light, outside of crystals */
 } abbe_light_path;
+_Static_assert(sizeof(abbe_light_path) == 64, "paths are copied at every interface");
 
 /* Along the ray of lane k, which Embree has been through. */
 static inline abbe_light_stretch abbe_light_path_stretch(const abbe_light_path *s,
@@ -375,20 +376,21 @@ static inline bool abbe_light_path_pass(const abbe_inner_rules *r, float passes,
 }
 
 /* Where lane k's path comes to a receiver. */
-static inline abbe_photon_hit abbe_light_path_hit(const abbe_light_path *s, const abbe_hit *hit,
-                                                  const abbe_scatter *p, size_t k) {
+static inline void abbe_light_path_hit(const abbe_light_path *s, const abbe_hit *hit,
+                                       const abbe_scatter *p, size_t k, abbe_photon_hit *out) {
   float along = 0;
   for (int i = 0; i < 3; i++) along += p->d[i][k] * hit->ng[i];
-  return (abbe_photon_hit){.surface = hit->surface->object,
-                           .face = hit->face,
-                           .u = hit->u,
-                           .v = hit->v,
-                           .p = {hit->p[0], hit->p[1], hit->p[2]},
-                           .side = along < 0 ? 1 : -1,
-                           .flux = s->flux,
-                           .step = s->step,
-                           .chance = {s->chance[0], s->chance[1]},
-                           .glows = s->glows};
+  out->surface = hit->surface->object;
+  out->face = hit->face;
+  out->u = hit->u;
+  out->v = hit->v;
+  memcpy(out->p, hit->p, sizeof out->p);
+  out->side = along < 0 ? 1 : -1;
+  out->flux = s->flux;
+  out->step = s->step;
+  memcpy(out->chance, s->chance, sizeof out->chance);
+  out->hidden = false;
+  out->glows = s->glows;
 }
 
 /* Matched physics: whether the renderer would still follow the path. */

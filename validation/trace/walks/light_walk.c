@@ -50,6 +50,7 @@ typedef struct run {
   const abbe_light *light;
   abbe_inner_rules rules;
   bool hidden, parallel;
+  bool plain; /* no crystal, film, rough face or polarised light anywhere: no lane has any */
   packet packet;
   size_t hits;
   abbe_photon_hit *hit;
@@ -59,20 +60,32 @@ typedef struct run {
 /* Numbers that decide for one branch at any share, but for total reflection's. */
 static const float REFLECT = -1, TRANSMIT = 2;
 
+/* What a face is besides: coated, rough, a crystal's. */
+static void meet_dressed(run *r, abbe_light_path *s, size_t k, int from, int to) {
+  const abbe_media *m = r->w->media;
+  packet *p = &r->packet;
+  p->film[k] = abbe_media_film(m, from, to, &p->hit[k]);
+  p->rough[k] = abbe_media_roughness(m, from, to, &p->hit[k]);
+  p->straight[k] = p->straight[k] && p->film[k] < 0;
+  p->crystal[k] =
+      !p->straight[k] && (r->rules.physics.polarised || abbe_media_is_crystal(m, from) ||
+                          abbe_media_is_crystal(m, to));
+  if (p->rough[k] > 0 && !s->frosted) r->ledger->frosted += (double)(s->y * s->flux);
+  s->frosted = s->frosted || p->rough[k] > 0;
+  if (s->steps == 0) s->shown = s->frosted;
+}
+
 /* What a path meets at a refractor: normals, indices, media. */
-static void meet_interface(const abbe_light_walk *w, const abbe_light_path *s, packet *p,
-                           size_t k) {
+static void meet_interface(run *r, abbe_light_path *s, size_t k) {
+  const abbe_light_walk *w = r->w;
+  packet *p = &r->packet;
   const abbe_hit *hit = &p->hit[k];
   const float d[3] = {p->scatter.d[0][k], p->scatter.d[1][k], p->scatter.d[2][k]};
   const bool entering = abbe_scatter_meet(&p->scatter, k, hit, d);
   abbe_media_cross(s->inside, hit->surface->index, entering, &p->before[k], &p->after[k]);
   int from = abbe_media_of(p->before[k]), to = abbe_media_of(p->after[k]);
-  p->film[k] = abbe_media_film(w->media, from, to, hit);
-  p->rough[k] = abbe_media_roughness(w->media, from, to, hit);
-  p->straight[k] = p->film[k] < 0 && abbe_media_same(w->media, from, to);
-  p->crystal[k] =
-      !p->straight[k] && (w->physics.polarised || abbe_media_is_crystal(w->media, from) ||
-                          abbe_media_is_crystal(w->media, to));
+  p->straight[k] = abbe_media_same(w->media, from, to);
+  if (!r->plain) meet_dressed(r, s, k, from, to);
   p->scatter.eta[k] = p->straight[k] ? 1
                                      : abbe_media_n(w->media, from, s->step, s->within) /
                                            abbe_media_n(w->media, to, s->step, s->within);
@@ -130,28 +143,26 @@ static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, abb
     return MIRRORED;
   }
   p->scatter.chance[k] = abbe_light_path_chance(&r->rules, s);
-  meet_interface(r->w, s, p, k);
-  if (p->rough[k] > 0 && !s->frosted) r->ledger->frosted += (double)(s->y * s->flux);
-  s->frosted = s->frosted || p->rough[k] > 0;
-  if (first) s->shown = s->frosted;
+  meet_interface(r, s, k);
   return ++s->steps >= ABBE_INNER_MAX_STEPS ? LOST : left ? SCATTERS : NOT_COUNTED;
 }
 
 /* Whether lane k's path splits at its interface. */
 static bool is_split(const abbe_light_walk *w, const packet *p, size_t k,
                      const abbe_light_path *s) {
-  return !(p->rough[k] > 0) && s->steps <= ABBE_PHOTON_SPLITS &&
-         (w->splits >> (s->steps - 1u) & 1) != 0;
+  return s->steps <= ABBE_PHOTON_SPLITS && (w->splits >> (s->steps - 1u) & 1) != 0 &&
+         !(p->rough[k] > 0);
 }
 
 /* What the path carries on the branch that was chosen, or on one of both; false for no light. */
 static bool take_branch(const packet *p, size_t k, bool split, abbe_light_path *s) {
   const size_t interface = s->steps - 1u;
+  if (!split && interface >= ABBE_PHOTON_SPLITS) return true;
   const bool reflects = p->scatter.reflects[k] && !p->straight[k];
   const float share = p->straight[k] ? 0 : p->scatter.share[k];
   const float part = p->rough[k] > 0 ? 1 : reflects ? share : 1 - share;
   if (!split) {
-    if (interface < ABBE_PHOTON_SPLITS) s->chance[interface] = part;
+    s->chance[interface] = part;
     return true;
   }
   const bool reflecting = p->scatter.chance[k] < 0;
@@ -237,7 +248,7 @@ static void deposit(run *r, size_t k, const abbe_light_path *s) {
   const abbe_hit *hit = &r->packet.hit[k];
   abbe_photon_hit *out = &r->hit[r->hits++];
   const double flux = (double)(s->y * s->flux);
-  *out = abbe_light_path_hit(s, hit, &r->packet.scatter, k);
+  abbe_light_path_hit(s, hit, &r->packet.scatter, k, out);
   r->ledger->deposited += flux;
   if (r->hidden)
     abbe_lamp_rays_add(&r->w->lamp_rays, r->w->g, r->light, hit, out, flux, r->ledger,
@@ -253,8 +264,8 @@ static void end_path(run *r, size_t k, path_state state, const abbe_light_path *
 }
 
 /* The paths of a packet on the branches that its lanes have taken, or with `second` those of split
- * paths on the other. */
-static void advance(run *r, const abbe_light_path *paths, size_t count, bool second) {
+ * paths, which are kept for it, on the other. */
+static void advance(run *r, abbe_light_path *paths, size_t count, bool second) {
   for (size_t k = 0; k < count; k++) {
     path_state state = r->packet.state[k];
     if (state != SCATTERS) {
@@ -265,14 +276,19 @@ static void advance(run *r, const abbe_light_path *paths, size_t count, bool sec
         end_path(r, k, LOST, &r->w->next->path[r->w->next->count]);
       continue;
     }
-    abbe_light_path s = paths[k];
-    const bool split = is_split(r->w, &r->packet, k, &s);
-    if ((r->packet.film[k] >= 0 || r->packet.rough[k] > 0) &&
-        !abbe_light_path_pass(&r->rules, r->packet.passes[k], split, second, &s, r->ledger))
+    abbe_light_path *s = &paths[k], branch;
+    const bool split = is_split(r->w, &r->packet, k, s);
+    if (second && !split) continue;
+    if (split) {
+      branch = *s;
+      s = &branch;
+    }
+    if (!r->plain && (r->packet.film[k] >= 0 || r->packet.rough[k] > 0) &&
+        !abbe_light_path_pass(&r->rules, r->packet.passes[k], split, second, s, r->ledger))
       continue;
-    if ((second && !split) || !take_branch(&r->packet, k, split, &s)) continue;
-    state = go_on(r, k, &s);
-    if (state != SCATTERS) end_path(r, k, state, &s);
+    if (!take_branch(&r->packet, k, split, s)) continue;
+    state = go_on(r, k, s);
+    if (state != SCATTERS) end_path(r, k, state, s);
   }
 }
 
@@ -281,8 +297,7 @@ static void scatter_packet(run *r, const abbe_light_path *paths, size_t count) {
   const abbe_media *m = r->w->media;
   const bool polarised = r->rules.physics.polarised;
   abbe_scatter_packet(&p->scatter);
-  const bool plain = m->crystal == NULL && m->films.count == 0 && m->rough == NULL && !polarised;
-  for (size_t k = 0; !plain && k < count; k++) {
+  for (size_t k = 0; !r->plain && k < count; k++) {
     const int from = abbe_media_of(p->before[k]), to = abbe_media_of(p->after[k]);
     abbe_wave_face face = {.from = from,
                            .to = to,
@@ -304,7 +319,7 @@ static void scatter_packet(run *r, const abbe_light_path *paths, size_t count) {
 
 /* Each lane's path goes on as its number decides; one that is split is reflected, and then
  * transmitted. */
-static void scatter(run *r, const abbe_light_path *paths, size_t count) {
+static void scatter(run *r, abbe_light_path *paths, size_t count) {
   abbe_scatter *s = &r->packet.scatter;
   bool splits[LANES], any = false, scatters = false, mirrors = false;
   for (size_t k = 0; k < count; k++) {
@@ -394,6 +409,8 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
            .rules = {.seed = w->seed, .pass = pass, .physics = w->physics},
            .hidden = w->for_map && light != NULL && w->hidden[light - w->g->scene->light],
            .parallel = light == NULL || light->kind == ABBE_LIGHT_DIRECTIONAL,
+           .plain = w->media->crystal == NULL && w->media->films.count == 0 &&
+                    w->media->rough == NULL && !w->physics.polarised,
            .hit = hit,
            .ledger = ledger};
   abbe_random_bits(0x73686966, 0, pass, w->seed, r.rules.shift);
