@@ -216,7 +216,10 @@ static uint64_t mix_places(uint64_t h, const abbe_scene *scene, const abbe_plan 
     const abbe_light *light = &scene->light[plan->light_view[i].light];
     MIX(h, light->kind);
     MIX(h, light->position);
-    if (light->kind == ABBE_LIGHT_DIRECTIONAL) MIX(h, light->direction);
+    if (light->kind == ABBE_LIGHT_DIRECTIONAL) {
+      MIX(h, light->direction);
+      MIX(h, light->radius);
+    }
     MIX(h, plan->light_view[i].light);
     MIX(h, plan->reaches[i]);
   }

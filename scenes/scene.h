@@ -70,7 +70,7 @@ typedef struct abbe_light {
   double position[3];  /* point, spot; the centre of a disk or rectangle */
   double direction[3]; /* spot, directional: unit, the direction in which the light travels; disk,
                           rectangle: unit, the normal of the side that shines */
-  double radius;       /* disk, m; rectangle: of the circle around it */
+  double radius;       /* disk, m; rectangle: of the circle around it; directional: its tangent */
   double edge[2][3];   /* rectangle: half of its width and of its height, m */
   size_t points; /* disk, rectangle: of so many that stand for it (environment_lights.h), with power
                     in W/sr; 0 where it is whole, as in a scene as it is loaded */

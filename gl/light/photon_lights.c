@@ -266,6 +266,7 @@ void abbe_photon_lights_upload(abbe_photon_lights *views) {
     g.misc[3] = views->scene->plan->reaches[i] ? 1 : 0;
     g.cube[0] = (float)views->scene->plan->light_view[i].faces;
     g.cube[1] = (float)abbe_gpu_area_lights_of(views->scene, i);
+    g.cube[2] = (float)abbe_gpu_shadows_radius(light);
     upload_warps(views, i);
     views->scene->gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, views->lights);
     views->scene->gpu->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(i * sizeof g),

@@ -83,13 +83,14 @@ static void list_environment(const abbe_scene *scene, abbe_plan *plan) {
                              "caustics (--transport pinhole: with): where it is alike all around, "
                              "clear objects and mirrors change nothing outside");
   else
-    abbe_plan_add(plan, ABBE_CHOICE_ENVIRONMENT,
-                  "the camera sees it whole; %zu directional lights, sharp, stand for the %.0f %% "
-                  "that stand out of it; %s",
-                  scene->environment_lights, 100 * kept / scene->environment->luminance,
-                  pinholes ? "pinholes show the rest to receivers"
-                           : "the rest lights receivers without shadows or caustics "
-                             "(--transport pinhole: with)");
+    abbe_plan_add(
+        plan, ABBE_CHOICE_ENVIRONMENT,
+        "the camera sees it whole; %zu directional lights stand for the %.0f %% that stand out of "
+        "it, sharp but for shadows of convex solids and balls; %s",
+        scene->environment_lights, 100 * kept / scene->environment->luminance,
+        pinholes ? "pinholes show the rest to receivers"
+                 : "the rest lights receivers without shadows or caustics "
+                   "(--transport pinhole: with)");
 }
 
 /* What a view draws of refractors for their back; `unmet`: why it draws none. */

@@ -160,7 +160,7 @@ typedef struct abbe_gpu_scene {
   /* [(light views + 1) x bands]: rgb of each light of unit power, last of the scene's illuminant */
   float haze_white[(ABBE_SCENE_MAX_LIGHTS + 1) * ABBE_PLAN_HAZE_BANDS][3];
 
-  /* All ranges, all planes, and with area lights the width of each's penumbra. */
+  /* All ranges, all planes, and with lights of some width that of each's penumbra. */
   abbe_gpu_shadow_row *shadow_row;
   size_t shadow_planes; /* 0: none, or more than a block holds: faces are asked one by one */
 } abbe_gpu_scene;
@@ -227,6 +227,11 @@ abbe_result abbe_gpu_bvh_make(abbe_gpu_scene *scene, abbe_error *error);
 /* gpu_shadows.c: the planes of convex refractors' shadows. */
 abbe_result abbe_gpu_shadows_make(abbe_gpu_scene *scene, abbe_error *error);
 void abbe_gpu_shadows_free(abbe_gpu_scene *scene);
+/* Of the part of a light that a point stands for, as a disk, m; of a directional light the tangent
+ * of the angle. 0 of lights without a size. */
+double abbe_gpu_shadows_radius(const abbe_light *light);
+/* Whether that of some light of the scene is above 0. */
+bool abbe_gpu_shadows_soft(const abbe_gpu_scene *scene);
 
 /* Linear Rec.709, as scene files have it, to the space that the shaders work in. */
 void abbe_gpu_scene_to_working(const abbe_gpu_scene *scene, const double rgb[3], double out[3]);
@@ -267,12 +272,13 @@ abbe_result abbe_bvh_nodes_pack(const abbe_bvh *hierarchy, const double (*triang
  * position, or for a directional one x itself. There are the planes of the outline and, if `faces`,
  * those of the lit faces: without them places between the solid and the light count as in shadow
  * too. One plane that holds for no place where the light is in front of no face, as for a light
- * inside. edge . x': how many times as far from the light x is as the edge of the solid on its ray,
- * where x lies on a plane of the outline; `edge` is 0 of other planes, and for directional lights.
- * Capacity of out and edge: twice `count`, and one. ABBE_NO_MEMORY; what is found is *found. */
+ * inside. edge . (x', 1), where x lies on a plane of the outline: how far behind the solid's edge
+ * x is along its ray, over that edge's distance from the light, or in metres for a directional one;
+ * of other planes `edge` is 0. Capacity of out and edge: twice `count`, and one. ABBE_NO_MEMORY;
+ * what is found is *found. */
 abbe_result abbe_shadow_planes_make(const double (*plane)[4], size_t count, const double inside[3],
                                     const abbe_light *light, bool faces, double (*out)[4],
-                                    double (*edge)[3], size_t *found, abbe_error *error);
+                                    double (*edge)[4], size_t *found, abbe_error *error);
 
 /* Whether some part of the object may lie between a convex object and the light: false only where a
  * plane, the object's own or across an axis, has the object on one side and those two on the other,

@@ -81,15 +81,15 @@ static void join(const double lit[4], double before, const double dark[4], doubl
   out->d /= depth;
 }
 
-/* The plane through the edge across the side, as what is 1 on it, from the light. */
-static void find_edge(const side *s, const double at[4], double out[3]) {
+/* By the plane through the edge across the side: how far behind it a place is along its ray, over
+ * the edge's distance from the light, or for a directional one in metres. */
+static void find_edge(const side *s, const double at[4], double out[4]) {
   const double a = abbe_vector_dot(s->dark, s->n), b = -abbe_vector_dot(s->lit, s->n);
-  double d = a * s->lit[3] + b * s->dark[3];
-  for (int k = 0; k < 3; k++) {
-    out[k] = a * s->lit[k] + b * s->dark[k];
-    d -= out[k] * at[k];
-  }
-  for (int k = 0; k < 3; k++) out[k] = d == 0 ? 0 : out[k] / d;
+  const double d = a * s->lit[3] + b * s->dark[3];
+  for (int k = 0; k < 3; k++) out[k] = a * s->lit[k] + b * s->dark[k];
+  const double scale = at[3] * d - abbe_vector_dot(out, at);
+  out[3] = at[3] == 0 ? -d : -scale;
+  for (int k = 0; k < 4; k++) out[k] = scale == 0 ? 0 : out[k] / scale;
 }
 
 static size_t store_sides(const side *hull, size_t count, bool far, double (*out)[4]) {
@@ -103,7 +103,7 @@ static size_t store_sides(const side *hull, size_t count, bool far, double (*out
 
 abbe_result abbe_shadow_planes_make(const double (*plane)[4], size_t count, const double inside[3],
                                     const abbe_light *light, bool faces, double (*out)[4],
-                                    double (*edge)[3], size_t *found, abbe_error *error) {
+                                    double (*edge)[4], size_t *found, abbe_error *error) {
   double at[4], axis[3], u[3], v[3];
   size_t lit = 0, pairs = 0, n = 0;
   *found = 0;
@@ -133,7 +133,7 @@ abbe_result abbe_shadow_planes_make(const double (*plane)[4], size_t count, cons
   }
   if (pairs > 0) n = store_sides(all + pairs, keep_hull(all, pairs, all + pairs), at[3] == 0, out);
   memset(edge, 0, (2 * count + 1) * sizeof *edge);
-  for (size_t i = 0; i < n && at[3] != 0; i++) find_edge(&all[pairs + i], at, edge[i]);
+  for (size_t i = 0; i < n; i++) find_edge(&all[pairs + i], at, edge[i]);
   for (size_t i = 0; i < count && faces; i++) {
     if (!(before[i] > 0)) continue;
     memcpy(out[n], plane[i], sizeof out[n]);
@@ -184,7 +184,7 @@ bool abbe_shadow_planes_in_front(const abbe_object *convex, const abbe_light *li
 }
 
 typedef struct shadow {
-  double plane[2 * ABBE_SCENE_MAX_PLANES + 1][4], edge[2 * ABBE_SCENE_MAX_PLANES + 1][3];
+  double plane[2 * ABBE_SCENE_MAX_PLANES + 1][4], edge[2 * ABBE_SCENE_MAX_PLANES + 1][4];
   size_t count;
 } shadow;
 
@@ -221,13 +221,22 @@ static abbe_result make_shadow(abbe_gpu_scene *scene, size_t light, size_t refra
                                  out->plane, out->edge, &out->count, error);
 }
 
-/* Of the part of a light that a point stands for, as a disk of its area: half of the width of the
- * smooth step that has its variance across a plane. 0 of lights without a size. */
-static double half_width(const abbe_light *light, const double normal[3]) {
+double abbe_gpu_shadows_radius(const abbe_light *light) {
+  if (light->kind == ABBE_LIGHT_DIRECTIONAL) return light->radius;
   if (light->points == 0) return 0;
+  return sqrt(abbe_light_area(light) / ((double)light->points * ABBE_PI));
+}
+
+/* Half of the width of the smooth step that has the disk's variance across a plane. */
+static double half_width(const abbe_light *light, const double normal[3]) {
   const double off = abbe_vector_dot(light->direction, normal);
-  const double radius = sqrt(abbe_light_area(light) / ((double)light->points * ABBE_PI));
-  return sqrt(1.25 * fmax(1 - off * off, 0)) * radius;
+  return sqrt(1.25 * fmax(1 - off * off, 0)) * abbe_gpu_shadows_radius(light);
+}
+
+bool abbe_gpu_shadows_soft(const abbe_gpu_scene *scene) {
+  for (size_t i = 0; i < scene->plan->light_view_count; i++)
+    if (abbe_gpu_shadows_radius(&scene->local->light[i]) > 0) return true;
+  return false;
 }
 
 /* A few counts for all: shaders are compiled for so many, and a light that moves changes its own.
@@ -242,7 +251,7 @@ static abbe_result keep_shadows(abbe_gpu_scene *scene, const shadow *found, size
   static const float on_no_side[4] = {0, 0, 0, 1e30f}; /* whatever is asked lies within it */
   size_t planes = 0, next = 0;
   for (size_t i = 0; i < pairs; i++) planes += found[i].count;
-  const size_t rows = padded(planes), tables = abbe_gpu_area_lights_count(scene) > 0 ? 2 : 1;
+  const size_t rows = padded(planes), tables = abbe_gpu_shadows_soft(scene) ? 2 : 1;
   if (planes == 0 || (pairs + tables * rows) * sizeof *scene->shadow_row > ABBE_GPU_BLOCK_BYTES)
     return ABBE_OK;
   scene->shadow_row = calloc(pairs + tables * rows, sizeof *scene->shadow_row);
@@ -255,11 +264,10 @@ static abbe_result keep_shadows(abbe_gpu_scene *scene, const shadow *found, size
     for (size_t k = 0; k < found[i].count; k++, next++) {
       const double *plane = found[i].plane[k], *edge = found[i].edge[k];
       for (int c = 0; c < 4; c++) scene->shadow_row[pairs + next].plane[c] = (float)plane[c];
-      const double wide =
-          tables == 1 ? 0
-                      : half_width(&scene->local->light[i / scene->plan->refractor_count], plane);
-      for (int c = 0; c < 4 && wide > 0 && abbe_vector_length(edge) > 0; c++)
-        scene->shadow_row[pairs + rows + next].plane[c] = (float)(wide * (c < 3 ? edge[c] : -1));
+      const abbe_light *from = &scene->local->light[i / scene->plan->refractor_count];
+      const double wide = half_width(from, plane);
+      for (int c = 0; c < 4 && wide > 0; c++)
+        scene->shadow_row[pairs + rows + next].plane[c] = (float)(wide * edge[c]);
     }
   }
   for (; next < rows; next++)
@@ -269,7 +277,7 @@ static abbe_result keep_shadows(abbe_gpu_scene *scene, const shadow *found, size
 
 static abbe_result upload(abbe_gpu_scene *scene, size_t pairs, abbe_error *error) {
   if (scene->shadow_planes == 0) return ABBE_OK;
-  const size_t tables = abbe_gpu_area_lights_count(scene) > 0 ? 2 : 1;
+  const size_t tables = abbe_gpu_shadows_soft(scene) ? 2 : 1;
   return abbe_gpu_make_buffer(scene->gpu,
                               (pairs + tables * scene->shadow_planes) * sizeof *scene->shadow_row,
                               scene->shadow_row, &scene->shadows, error);

@@ -35,6 +35,7 @@
   X(volume, VOLUME, p->volume) /* caustics are looked up in the plan's */                          \
   X(walk, WALK, p->multi_refractor_paths)                                                          \
   X(mirrors, MIRRORS, p->mirror_count > 0)                                                         \
+  X(soft_shadows, SOFT_SHADOWS, abbe_gpu_shadows_soft(scene))                                      \
   X(rough, ROUGH, p->rough)                                                                        \
   X(cubes, CUBES, p->cubes)                                                                        \
   X(haze, HAZE, p->hazy)                      /* in the air, or around the eye */                  \

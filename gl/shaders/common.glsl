@@ -14,7 +14,7 @@ struct Light {
   vec4 misc;       // cosine where the soft edge starts; flux of one map unit, of unit power; photons by window area;
                    // whether it meets a refractor
   vec4 cube;       // faces of the cube around it whose light this is, a bit each; number from 1 of the light with a
-                   // size that it is a point of, or 0
+                   // size that it is a point of, or 0; radius of its part, m, of a directional light its tangent
 };
 
 struct Refractor {

@@ -54,7 +54,7 @@ vec4 own_plane[PLANE_ROOM];
 layout(std140, binding = BINDING_SHADOW_PLANES) uniform ShadowPlanes {
   ivec4 shadow_range[LIGHT_ROOM * REFRACTOR_ROOM];
   vec4 shadow_planes[SHADOW_PLANES];
-#ifdef AREA_LIGHTS
+#ifdef SOFT_SHADOWS
   vec4 shadow_edges[SHADOW_PLANES];  // half of the penumbra's width there: . (x, 1)
 #endif
 };

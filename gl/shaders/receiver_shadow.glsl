@@ -41,7 +41,7 @@ float convex_lit(int light, int refractor, vec3 p) {
 #endif
   if (count == 0) return 1.0;
   float most = -1e30, wide = 0.0;
-#ifdef AREA_LIGHTS
+#ifdef SOFT_SHADOWS
   int at = 0;
 #define CROSS(i) { float off = dot(SHADOW_PLANE(i).xyz, x) - SHADOW_PLANE(i).w; at = off > most ? i : at; most = max(most, off); }
   OF_SHADOW_PLANES(CROSS)
@@ -54,24 +54,43 @@ float convex_lit(int light, int refractor, vec3 p) {
 }
 #endif
 
+#ifdef SPHERES
+// Share of a light that a ball leaves, in front of p: of a light of some width what one disk leaves of another.
+float sphere_lit(int light, vec4 sphere, vec3 p, vec3 from, vec3 d, float distance_m, Hit h) {
+#ifdef SOFT_SHADOWS
+  float along = dot(p - sphere.xyz, d), r = LIGHT(light).cube.z * along;
+  if (int(LIGHT(light).position.w) != 2) r /= max(distance_m - along, 1e-6 * distance_m);
+  if (r > 0.0) {
+    float ball = sphere.w / r, off = max(length(p - sphere.xyz - along * d) / r, abs(ball - 1.0));
+    if (off >= ball + 1.0) return 1.0;
+    float x = (off * off + 1.0 - ball * ball) / (2.0 * off), y = off - x;
+    return 1.0 - clamp((acos(clamp(x, -1.0, 1.0)) - off * sqrt(max(1.0 - x * x, 0.0)) +
+                        ball * ball * acos(clamp(y / ball, -1.0, 1.0))) / PI, 0.0, 1.0);
+  }
+#endif
+  return sphere_front(sphere, from, d, h) ? 0.0 : 1.0;
+}
+#endif
+
 // Share of a light that refractors with exact surfaces leave, between it and p or around p.
 float exact_lit(int light, vec3 p, vec3 d, float distance_m) {
   Hit h;
   // The ray begins close before all refractors: from farther away it would miss them by its rounding.
   h.t = min(distance_m, max(dot(p - refractor_bounds.xyz, d) + 1.01 * refractor_bounds.w, 0.0));
   vec3 from = p - h.t * d;
-#ifndef SHADOW_PLANES
-  return exact_front(from, d, h) ? 0.0 : 1.0;
-#else
   float lit = 1.0;
   for (int r = 0; r < REFRACTORS; r++) {
+#ifdef SHADOW_PLANES
     lit = min(lit, convex_lit(light, r, p));
+#elif defined(CONVEX)
+    if (refractors[r].info.x == MODEL_CONVEX && convex_front(refractors[r].info, from, d, h)) lit = 0.0;
+#endif
 #ifdef SPHERES
-    if (refractors[r].info.x == MODEL_SPHERE && sphere_front(refractors[r].sphere, from, d, h)) lit = 0.0;
+    if (refractors[r].info.x == MODEL_SPHERE)
+      lit = min(lit, sphere_lit(light, refractors[r].sphere, p, from, d, distance_m, h));
 #endif
   }
   return lit;
-#endif
 }
 
 // Share of direct light that no refractor takes away before p.

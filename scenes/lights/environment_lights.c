@@ -196,6 +196,9 @@ static abbe_result set_light(const abbe_environment *e, const abbe_upsampling *u
   out->kind = ABBE_LIGHT_DIRECTIONAL;
   for (int k = 0; k < 3; k++) rgb[k] /= y;
   out->power = sum * brightness(up, rgb);
+  /* A disk's directions have half of (1 - cos) of its edge's angle from their mean. */
+  const double edge = fmax(2 * sum / p->value[0] - 1, 0.5);
+  out->radius = sqrt(fmax(1 - edge * edge, 0)) / edge;
   char name[40];
   snprintf(name, sizeof name, "environment %zu", number);
   out->name = strdup(name);

@@ -78,25 +78,35 @@ TEST(they_light_by_closed_forms) {
   }
 }
 
-/* ---- soft shadows of convex solids ---- */
+/* ---- soft shadows of convex solids and balls ---- */
 
 enum { STRIP = 64 };
 
+#define A_DISK                                                                                     \
+  "lights: [{name: disk, kind: disk, position: [0, 0, 0.6], direction: [0, 0, -1], radius: 0.1, "  \
+  "radiance: 1}]\n"
+#define A_SOFTBOX "environment: {softboxes: [{elevation: 90, radius: 8, radiance: 9}]}\n"
+#define A_SLAB                                                                                     \
+  "- {name: slab, shape: box, size: [1, 1, 0.001], material: flat, transform: [{translate: "       \
+  "[-0.5, 0, 0.2]}]}\n"
+#define A_BALL                                                                                     \
+  "- {name: ball, shape: sphere, radius: 0.035, material: flat, transform: [{translate: [0, 0, "   \
+  "0.2]}]}\n"
+
 /* Direct light along x on the floor, 0.06 m to both sides. */
-static void draw_strip(const char *object, double out[STRIP]) {
+static void draw_strip(const char *light, const char *object, double out[STRIP]) {
   const abbe_render_desc desc = {.width = STRIP,
                                  .height = STRIP,
                                  .supersample = 1,
                                  .photons = 16,
                                  .map_size = 64,
                                  .aovs = true};
-  OWNED(abbe_scene, scene) = scene_of(printed(
-      "materials: glass.yaml\n"
-      "camera: {eye: [0, -0.16, 0.12], target: [0, 0, 0], up: [0, 0, 1], fov: %.9g}\n"
-      "lights: [{name: disk, kind: disk, position: [0, 0, 0.6], direction: [0, 0, -1], radius: "
-      "0.1, radiance: 1}]\nobjects:\n- {name: floor, shape: rectangle, width: 3, height: 3, "
-      "reflectance: 1}\n%s",
-      2 * atan(0.06 / 0.2) * 180 / ABBE_PI, object));
+  OWNED(abbe_scene, scene) = scene_of(
+      printed("materials: glass.yaml\n"
+              "camera: {eye: [0, -0.16, 0.12], target: [0, 0, 0], up: [0, 0, 1], fov: %.9g}\n"
+              "%sobjects:\n- {name: floor, shape: rectangle, width: 3, height: 3, "
+              "reflectance: 1}\n%s",
+              2 * atan(0.06 / 0.2) * 180 / ABBE_PI, light, object));
   HELD(abbe_renderer, renderer) = drawn_renderer(&scene, &desc);
   OWNED(abbe_image, picture) = aovs_of(renderer);
   const size_t channel = abbe_image_find_channel(&picture, "direct.G");
@@ -104,38 +114,50 @@ static void draw_strip(const char *object, double out[STRIP]) {
     out[i] = (double)picture.data[(STRIP * STRIP / 2 + i) * picture.channels + channel];
 }
 
-/* The share of the disk's light on the floor at x that a slab leaves, which reaches to x = 0 at 0.2
- * m. */
-static double left_by_slab(double x) {
+/* The share of the light on the floor at x that a slab leaves, which reaches to x = 0 at 0.2 m, or
+ * a ball there. The disk of 0.1 m lies at 0.6 m; a softbox's is as far as places differ little. */
+static double left_of(bool far, bool ball, double x) {
   enum { PARTS = 400 };
   double seen = 0, all = 0;
+  const double r = far ? tan(8 * ABBE_PI / 180) : 0.1 / 0.6;
   for (int i = 0; i < PARTS * PARTS; i++) {
-    const double u = 0.2 * ((i % PARTS + 0.5) / PARTS - 0.5),
-                 v = 0.2 * ((i / PARTS + 0.5) / PARTS - 0.5);
-    if (u * u + v * v > 0.01) continue;
-    const double square = (u - x) * (u - x) + v * v + 0.36;
-    all += 1 / (square * square);
-    if (x + (u - x) / 3 > 0) seen += 1 / (square * square);
+    const double u = r * (2 * (i % PARTS + 0.5) / PARTS - 1);
+    const double v = r * (2 * (i / PARTS + 0.5) / PARTS - 1);
+    if (u * u + v * v > r * r) continue;
+    const double d[3] = {far ? u : u - x / 0.6, v, 1}, length = abbe_vector_length(d);
+    const double along = (0.2 - x * d[0]) / length; /* to beside the ball's middle */
+    const double off = sqrt(fmax(x * x + 0.04 - along * along, 0));
+    all += pow(length, -4);
+    if (ball ? off > 0.035 : x + 0.2 * d[0] > 0) seen += pow(length, -4);
   }
   return seen / all;
 }
 
-TEST(convex_solids_shade_them_softly) {
-  double bare[STRIP], left[STRIP], worst = 0, mean = 0, step = 0;
-  draw_strip("", bare);
-  draw_strip("- {name: slab, shape: box, size: [1, 1, 0.001], material: flat, transform: "
-             "[{translate: [-0.5, 0, 0.2]}]}\n",
-             left);
-  for (int i = 0; i < STRIP; i++) {
-    left[i] /= bare[i];
-    const double off = left[i] - left_by_slab(0.06 * ((2 * i + 1.0) / STRIP - 1));
-    worst = fmax(worst, fabs(off));
-    mean += off / STRIP;
-    if (i > 0) step = fmax(step, fabs(left[i] - left[i - 1]));
+TEST(convex_solids_and_balls_shade_them_softly) {
+  static const struct {
+    bool far, ball;
+    double worst, mean;
+  } row[] = {
+      {false, false, 0.07, 0.02}, /* eight points have their middle 4 % of the radius aside */
+      {true, false, 0.03, 0.01},
+      {true, true, 0.03, 0.01},
+  };
+  for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
+    double bare[STRIP], left[STRIP], worst = 0, mean = 0, step = 0;
+    const char *light = row[k].far ? A_SOFTBOX : A_DISK;
+    draw_strip(light, "", bare);
+    draw_strip(light, row[k].ball ? A_BALL : A_SLAB, left);
+    for (int i = 0; i < STRIP; i++) {
+      left[i] /= bare[i];
+      const double x = 0.06 * ((2 * i + 1.0) / STRIP - 1);
+      const double off = left[i] - left_of(row[k].far, row[k].ball, x);
+      worst = fmax(worst, fabs(off));
+      mean += off / STRIP;
+      if (i > 0) step = fmax(step, fabs(left[i] - left[i - 1]));
+    }
+    print_message("%zu: at most %.4f off, in the mean %.4f; steps of %.4f\n", k, worst, mean, step);
+    assert_true(worst < row[k].worst && fabs(mean) < row[k].mean && step < 0.06);
   }
-  print_message("at most %.4f off, in the mean %.4f; steps of %.4f\n", worst, mean, step);
-  /* Eight points have their middle 4 % of the radius aside. */
-  assert_true(worst < 0.07 && fabs(mean) < 0.02 && step < 0.03);
 }
 
 /* ---- what they hide, and what shows them ---- */

@@ -309,16 +309,16 @@ static const pair pairs[] = {
            {RUNS(CHOICE_TEXTURES, "a receiver has one"), COLOURED, END}),
     FIELDS("a light with a size", ball, CAMERA DISK_LIGHT FLOOR BALL("crown"), {.light_points = 1},
            {RUNS(CHOICE_LIGHT_SIZE, LAMP_HAS_SIZE), END}),
-    FIELDS(
-        "an environment", ball,
-        CAMERA POINT_LIGHT FLOOR BALL(
-            "crown") "environment: {softboxes: [{elevation: 90, radius: 3, radiance: 9}]}\n",
-        {.environment_lights = 1},
-        {RUNS_OF(CHOICE_LIGHT_MAP, "environment 1", "the light may meet a refractor"),
-         RUNS(CHOICE_ENVIRONMENT, "the camera sees it whole; 1 directional lights, sharp, stand "
-                                  "for the 100 % that stand out of it; the rest lights receivers "
-                                  "without shadows or caustics (--transport pinhole: with)"),
-         END}),
+    FIELDS("an environment", ball,
+           CAMERA POINT_LIGHT FLOOR BALL(
+               "crown") "environment: {softboxes: [{elevation: 90, radius: 3, radiance: 9}]}\n",
+           {.environment_lights = 1},
+           {RUNS_OF(CHOICE_LIGHT_MAP, "environment 1", "the light may meet a refractor"),
+            RUNS(CHOICE_ENVIRONMENT, "the camera sees it whole; 1 directional lights stand for the "
+                                     "100 % that stand out of it, sharp but for shadows of convex "
+                                     "solids and balls; the rest lights receivers without shadows "
+                                     "or caustics (--transport pinhole: with)"),
+            END}),
     FIELDS("an eye that looks past the refractor", ball, EYE_ASIDE POINT_LIGHT FLOOR BALL("crown"),
            {0},
            {RESTS(PASS_EYE_FRONT, "the eye sees no refractor"),

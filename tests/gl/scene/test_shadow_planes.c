@@ -132,7 +132,7 @@ static double outside(const double (*plane)[4], size_t count, const abbe_light *
   return most;
 }
 
-static double edge[2 * MOST + 1][3]; /* of the planes that planes_of has found last */
+static double edge[2 * MOST + 1][4]; /* of the planes that planes_of has found last */
 
 static size_t planes_of(const solid *s, const abbe_light *light, bool faces, double (*out)[4]) {
   size_t count = 0;

@@ -29,6 +29,7 @@ TEST(one_softbox_is_one_light) {
   assert_near(lit.light[0].power / (ABBE_PI * 3 * pow(sin(r), 2)), 1, 1e-3);
   for (int k = 0; k < 3; k++) assert_near(lit.light[0].direction[k], way[k], 1e-3);
   assert_int_equal(lit.light[0].kind, ABBE_LIGHT_DIRECTIONAL);
+  assert_near(lit.light[0].radius, tan(r), 2e-3);
   drop(&scene, &lit);
 }
 
