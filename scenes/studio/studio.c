@@ -268,6 +268,28 @@ static abbe_result set_size(building *b, abbe_error *error) {
   return scale(b, table_of, 0, "height", 1, factor, error);
 }
 
+/* Cards of light behind, where flat metal mirrors the camera: brighter upwards, as many times the
+ * room's own light. Without them it shows the dark between the looks' lights. */
+static abbe_result add_cards(building *b, abbe_error *error) {
+  static const double card[][2] = {{-9, 4}, {1, 6}, {11, 10}}; /* degrees above the camera, times */
+  const size_t boxes = pair_of(b, value_of(b, "environment"), "softboxes");
+  double elevation = 0, uniform = 0;
+  if (boxes == SIZE_MAX || (b->studio->with != ABBE_STUDIO_WITH_RING && b->studio->setting == 0))
+    return ABBE_OK;
+  ABBE_TRY(abbe_yaml_get_number(b->edit.yaml, value_of(b, "camera"), "elevation", -90, 90,
+                                &elevation, error));
+  ABBE_TRY(abbe_yaml_get_number(b->edit.yaml, value_of(b, "environment"), "uniform", 0, HUGE_VAL,
+                                &uniform, error));
+  for (size_t i = 0; i < sizeof card / sizeof *card; i++) {
+    char item[128];
+    abbe_number_format(item, sizeof item,
+                       "{elevation: %.6g, azimuth: 90, width: 90, height: 10, radiance: %.6g}",
+                       elevation + card[i][0], uniform * card[i][1]);
+    ABBE_TRY(abbe_yaml_edit_append(&b->edit, value_of(b, "environment"), boxes, item, error));
+  }
+  return ABBE_OK;
+}
+
 static abbe_result describe(building *b, abbe_error *error) {
   static const char *const looks[] = {
 #define NAME(name) #name,
@@ -298,6 +320,7 @@ static abbe_result compose(building *b, abbe_error *error) {
   if (with == ABBE_STUDIO_WITH_NONE) ABBE_TRY(take_out(b, "table", error));
   ABBE_TRY(set_size(b, error));
   ABBE_TRY(set_camera(b, error));
+  ABBE_TRY(add_cards(b, error));
   return describe(b, error);
 }
 

@@ -1,6 +1,7 @@
 #include "tests/check.h"
 
 #include "base/file.h"
+#include "base/maths.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/studio/setting.h"
 #include "scenes/studio/studio.h"
@@ -51,6 +52,30 @@ TEST(every_look_shows_a_stone) {
       if (with == ABBE_STUDIO_WITH_TABLE) assert_near(stone->min[2], 0, 1e-15);
       if (with == ABBE_STUDIO_WITH_RING) assert_true(stone->min[2] > 0.01);
       assert_int_equal(called(&scene, "band") != NULL, with == ABBE_STUDIO_WITH_RING);
+    }
+}
+
+/* A flat face of metal shows what is behind as high as the camera: light in studios of softboxes,
+ * graded; beside a bare stone it is as dark as the room. */
+TEST(flat_metal_mirrors_light) {
+  static const abbe_studio_look looks[] = {ABBE_STUDIO_LOOK_white, ABBE_STUDIO_LOOK_black,
+                                           ABBE_STUDIO_LOOK_velvet, ABBE_STUDIO_LOOK_backdrop};
+  for (size_t i = 0; i < sizeof looks / sizeof *looks; i++)
+    for (int setting = 0; setting <= 1 + ABBE_SETTING_BEZEL; setting += 1 + ABBE_SETTING_BEZEL) {
+      const abbe_studio studio = {.look = looks[i], .setting = setting};
+      FILLED(abbe_scene, scene, load(OVAL, &studio, &scene));
+      double d[3], dark[3] = {-0.1, 0, -1}, room[3], seen[3], above[3];
+      for (int k = 0; k < 3; k++)
+        d[k] = (k < 2 ? -1 : 1) * (scene.camera.eye[k] - scene.camera.target[k]);
+      abbe_vector_normalise(d);
+      abbe_vector_normalise(dark);
+      const double high = asin(d[2]) + 0.17;
+      abbe_environment_radiance(scene.environment, dark, room);
+      abbe_environment_radiance(scene.environment, d, seen);
+      const double up[3] = {0, cos(high), sin(high)};
+      abbe_environment_radiance(scene.environment, up, above);
+      assert_near(seen[1] / room[1], setting == 0 ? 1 : 7, 0.2);
+      assert_near(above[1] / room[1], setting == 0 ? 1 : 11, 0.2);
     }
 }
 
