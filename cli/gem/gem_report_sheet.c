@@ -8,6 +8,7 @@
 #include "colorimetry/plot/sheet.h"
 #include "validation/measure/gem/gem_maps.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -17,11 +18,13 @@ static void put_numbers(abbe_sheet *s, const abbe_gem_report_facts *f, double y)
   abbe_gem_judgement_row row[ABBE_GEM_JUDGEMENT_MOST_ROWS];
   const size_t count = abbe_gem_judgement_rows(f->judgement, row);
   const double right = ABBE_SHEET_A4_WIDTH - MARGIN;
+  /* All rows are above the page's last line; a crystal has most. */
+  const double line = fmin(LINE, (ABBE_SHEET_A4_HEIGHT - MARGIN - 4 - y) / (double)count);
   abbe_sheet_text(s, right - 70, y, 8, false, true, 0.4, "value");
   abbe_sheet_text(s, right, y, 8, false, true, 0.4, "standard error");
   for (size_t i = 0; i < count; i++) {
     char value[32], error[32];
-    y += LINE;
+    y += line;
     abbe_sheet_line(s, MARGIN, y + 4, right, y + 4, 0.9);
     abbe_gem_report_number(&row[i], value, error);
     abbe_sheet_text(s, MARGIN, y, 9, false, false, 0.1, row[i].text);
