@@ -80,33 +80,91 @@ static void between_rays(const abbe_specular *s, const ray *a, const ray *b, abb
     outline(s, b, a, e);
 }
 
-abbe_edge abbe_edge_between(const abbe_specular *s, const abbe_specular_tree *below,
-                            const abbe_specular_tree *above) {
-  abbe_edge e = {.kind = ABBE_EDGE_NONE};
-  if (!below->whole || !above->whole) return e;
-  for (size_t i = 0; i < below->steps && i < above->steps; i++) {
-    const ray a = ray_of_step(&below->step[i]), b = ray_of_step(&above->step[i]);
-    e.index = i;
-    if (a.object != b.object ||
-        abbe_specular_face(s, a.object, a.face) != abbe_specular_face(s, b.object, b.face)) {
-      between_rays(s, &a, &b, &e);
-      return e;
+/* ---- two trees side by side ---- */
+
+typedef struct comparison {
+  const abbe_specular *s;
+  const abbe_specular_tree *tree[2];
+  size_t next[2];
+  double flux, most; /* of all paths that differ, and of the one that is the edge */
+  size_t at[2];      /* the edge's steps */
+} comparison;
+
+/* Everything behind a step that the other tree has no like of. */
+static void skip(comparison *c, int side) {
+  const abbe_specular_tree *t = c->tree[side];
+  if (c->next[side] >= t->steps) return;
+  const unsigned on = t->step[c->next[side]++].on;
+  for (int i = __builtin_popcount(on); i > 0; i--) skip(c, side);
+}
+
+/* A step of both, and what is behind it, in the order in which paths are followed. */
+static void compare(comparison *c) {
+  static const uint8_t hows[] = {ABBE_SPECULAR_PASSED, ABBE_SPECULAR_REFLECTED,
+                                 ABBE_SPECULAR_REFRACTED};
+  if (c->next[0] >= c->tree[0]->steps || c->next[1] >= c->tree[1]->steps) return;
+  const abbe_specular_step *a = &c->tree[0]->step[c->next[0]], *b = &c->tree[1]->step[c->next[1]];
+  if (a->object != b->object || abbe_specular_face(c->s, a->object, a->face) !=
+                                    abbe_specular_face(c->s, b->object, b->face)) {
+    const double flux = fmax(a->flux, b->flux);
+    c->flux += flux;
+    if (flux > c->most) {
+      c->most = flux;
+      for (int i = 0; i < 2; i++) c->at[i] = c->next[i];
     }
-    const int on = below->step[i].on ^ above->step[i].on;
-    if (on == 0) continue;
-    e.kind = ABBE_EDGE_FAINT;
-    e.side = on == 2;
-    return e;
+    for (int i = 0; i < 2; i++) skip(c, i);
+    return;
   }
+  const uint8_t on[2] = {a->on, b->on};
+  for (int i = 0; i < 2; i++) c->next[i]++;
+  for (int i = 0; i < 3; i++) {
+    if ((on[0] & on[1] & hows[i]) != 0) {
+      compare(c);
+    } else if (((on[0] ^ on[1]) & hows[i]) != 0) {
+      const int side = (on[1] & hows[i]) != 0;
+      const size_t next = c->next[side];
+      if (next < c->tree[side]->steps) c->flux += c->tree[side]->step[next].flux;
+      skip(c, side);
+    }
+  }
+}
+
+static void compare_shadows(const comparison *c, abbe_edge *e) {
+  const abbe_specular_tree *below = c->tree[0], *above = c->tree[1];
+  double most = 0;
   for (size_t i = 0; i < below->shadows && i < above->shadows; i++) {
     const ray a = ray_of_shadow(&below->shadow[i]), b = ray_of_shadow(&above->shadow[i]);
     const bool hidden[2] = {a.object != ABBE_SPECULAR_NOTHING, b.object != ABBE_SPECULAR_NOTHING};
     if (hidden[0] == hidden[1]) continue;
-    e.index = i;
-    e.shadow = true;
-    outline(s, hidden[0] ? &a : &b, hidden[0] ? &b : &a, &e);
+    const double flux = fmax(below->shadow[i].flux, above->shadow[i].flux);
+    e->flux += flux;
+    if (!(flux > most)) continue;
+    most = flux;
+    e->index = i;
+    e->shadow = true;
+    outline(c->s, hidden[0] ? &a : &b, hidden[0] ? &b : &a, e);
+  }
+}
+
+abbe_edge abbe_edge_between(const abbe_specular *s, const abbe_specular_tree *below,
+                            const abbe_specular_tree *above) {
+  abbe_edge e = {.kind = ABBE_EDGE_NONE, .flux = INFINITY};
+  if (!below->whole || !above->whole) return e;
+  comparison c = {.s = s, .tree = {below, above}};
+  while (c.next[0] < below->steps && c.next[1] < above->steps) compare(&c);
+  e.flux = c.flux;
+  if (c.most > 0) {
+    const ray a = ray_of_step(&below->step[c.at[0]]), b = ray_of_step(&above->step[c.at[1]]);
+    e.index = c.at[0];
+    between_rays(s, &a, &b, &e);
     return e;
   }
+  compare_shadows(&c, &e);
+  if (e.kind != ABBE_EDGE_NONE) return e;
+  if (c.next[0] < below->steps || c.next[1] < above->steps)
+    e.flux = INFINITY;
+  else
+    e.kind = ABBE_EDGE_FAINT;
   return e;
 }
 
@@ -122,8 +180,6 @@ double abbe_edge_value(const abbe_specular *s, const abbe_edge *e, const abbe_sp
   if (e->shadow ? e->index >= tree->shadows
                 : e->index > tree->steps || (e->index == tree->steps && !tree->failed))
     return NAN;
-  if (e->kind == ABBE_EDGE_FAINT)
-    return e->index < tree->steps ? tree->step[e->index].sent[e->side] - tree->faint : NAN;
   const ray r =
       e->shadow ? ray_of_shadow(&tree->shadow[e->index]) : ray_of_step(&tree->step[e->index]);
   if (e->kind == ABBE_EDGE_OUTLINE)

@@ -18,12 +18,14 @@
 
 /* What lines add to. */
 typedef struct abbe_line_sums {
-  bool *felt;         /* [keys] */
-  double light, left; /* of what is seen, and what paths that are too long had */
-  double jumps, lost; /* of what jumps, and of jumps whose motion was not found */
+  bool *felt;           /* [keys] */
+  double light, left;   /* of what is seen, and what paths that are too long had */
+  double jumps, lost;   /* of what jumps, and of jumps whose motion was not found */
+  double shown, places; /* of the film: what is seen; at so many points */
+  double looks, bright; /* between points; of the light: what jumps with more is always followed */
 } abbe_line_sums;
 
-enum { ABBE_LINE_TREES = 5 };
+enum { ABBE_LINE_DEPTH = 40, ABBE_LINE_TREES = 5 + 2 * ABBE_LINE_DEPTH };
 
 typedef struct abbe_line abbe_line;
 struct abbe_line {
@@ -58,19 +60,21 @@ typedef struct abbe_edge {
     ABBE_EDGE_OUTLINE,  /* of a sphere */
     ABBE_EDGE_SIDE,     /* of a triangle */
     ABBE_EDGE_LAMP,
-    ABBE_EDGE_FAINT /* a path ends that is too faint: no light jumps */
+    ABBE_EDGE_FAINT /* paths end that are too faint: no light jumps but behind them */
   } kind;
   bool shadow;  /* of a ray to what may be hidden, not of a path's step */
   size_t index; /* of the step or the shadow */
   uint32_t object[2], face[2];
-  int side; /* of a triangle or a light; of what is refracted and what is reflected */
+  int side;    /* of a triangle or a light */
+  double flux; /* on all paths that differ; infinite where that is not known */
 } abbe_edge;
 
-/* kind ABBE_EDGE_NONE: it is not known what jumps. */
+/* Of the brightest path that differs, by steps of `below`. kind ABBE_EDGE_NONE: it is not known
+ * what jumps. */
 abbe_edge abbe_edge_between(const abbe_specular *s, const abbe_specular_tree *below,
                             const abbe_specular_tree *above);
-/* The function that is 0 there, of a tree that has met what `below` or `above` met in that scene;
- * NAN where it has none. */
+/* The function that is 0 there, of a tree that has met what `below` met in that scene; NAN where it
+ * has none. */
 double abbe_edge_value(const abbe_specular *s, const abbe_edge *e, const abbe_specular_tree *tree);
 
 #endif

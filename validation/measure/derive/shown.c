@@ -119,6 +119,7 @@ void abbe_film_of_hit(const abbe_film *film, size_t scene, double lambda_nm, con
   const double away = abbe_vector_length(d), z = -abbe_vector_dot(d, s->forward);
   abbe_vector_normalise(d);
   const double facing = abbe_vector_dot(d, h->n);
+  tree->lit = h->flux;
   const bool shown = z > 0 && facing * abbe_vector_dot(h->d, h->n) < 0;
   const bool hidden = abbe_specular_hides(&s->specular, ABBE_SPECULAR_ALL, h->p, d, h->inside,
                                           shown ? away : 0, ABBE_SPECULAR_NOTHING, known, tree);
@@ -319,7 +320,7 @@ static void add_receiver(leaf *f) {
 static void add_leaf(leaf *f) {
   const abbe_scene *scene = f->s->specular.scene;
   const abbe_specular_hit *h = &f->tree->hit[f->hit];
-  f->share = h->flux;
+  f->share = f->tree->lit = h->flux;
   f->object = scene->object_count;
   f->reflectance = f->channel[0] = 1;
   if (h->object == ABBE_SPECULAR_NOTHING) {

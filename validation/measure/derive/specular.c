@@ -17,6 +17,8 @@ typedef struct path {
   double o[3], d[3], flux;
   uint64_t inside; /* refractors that it is in, a bit each */
   size_t met;
+  uint32_t from; /* its last step */
+  uint8_t how;   /* what it did there */
 } path;
 
 typedef struct walk {
@@ -30,7 +32,11 @@ typedef struct walk {
   abbe_specular_tree *out;
 } walk;
 
-enum { REFRACTED = 1, REFLECTED = 2 };
+enum {
+  REFRACTED = ABBE_SPECULAR_REFRACTED,
+  REFLECTED = ABBE_SPECULAR_REFLECTED,
+  PASSED = ABBE_SPECULAR_PASSED
+};
 
 /* The refractor that counts among those that a place is in: the later object. */
 static int medium_of(uint64_t inside) {
@@ -38,20 +44,26 @@ static int medium_of(uint64_t inside) {
 }
 
 static void push(walk *w, const path *p, uint8_t how) {
-  abbe_specular_step *from = &w->out->step[w->out->steps - 1];
-  from->sent[how == REFLECTED] = p->flux;
-  if (w->known == NULL) {
+  const size_t last = w->out->steps - 1;
+  abbe_specular_step *from = &w->out->step[last];
+  if (how == PASSED) {
+    from->on |= how;
+  } else if (w->known == NULL) {
     if (!(p->flux > 0)) return;
     const bool ends = p->flux < w->out->faint || p->met >= w->interfaces ||
                       w->waiting == sizeof w->stack / sizeof *w->stack;
     abbe_specular_sign(w->out, ends);
     from->on |= ends ? 0 : how;
   } else
-    from->on |= w->known->step[w->out->steps - 1].on & how;
-  if ((from->on & how) == 0)
+    from->on |= w->known->step[last].on & how;
+  if ((from->on & how) == 0) {
     w->out->left += p->flux;
-  else
-    w->stack[w->waiting++] = *p;
+    return;
+  }
+  path *to = &w->stack[w->waiting++];
+  *to = *p;
+  to->from = (uint32_t)last;
+  to->how = how;
 }
 
 bool abbe_specular_hides(const abbe_specular *s, abbe_specular_what what, const double o[3],
@@ -76,6 +88,7 @@ bool abbe_specular_hides(const abbe_specular *s, abbe_specular_what what, const 
   abbe_specular_shadow *to = &tree->shadow[tree->shadows++];
   memcpy(to->o, o, sizeof to->o);
   memcpy(to->d, d, sizeof to->d);
+  to->flux = tree->lit;
   to->object = m.object;
   to->face = m.face;
   if (known != NULL && known->checks && i < known->shadows)
@@ -117,6 +130,7 @@ static void land(walk *w, const path *p, const abbe_meeting *m) {
   memcpy(hit->d, p->d, sizeof hit->d);
   memcpy(hit->n, m->n, sizeof hit->n);
   memcpy(hit->side, m->side, sizeof hit->side);
+  t->lit = p->flux;
   if (!w->seen && abbe_specular_is_dark(w->s, hit->p, m->object, w->known, t)) return;
   t->count++;
 }
@@ -140,7 +154,7 @@ static void interface(walk *w, path *p, const abbe_meeting *m, const double n[3]
   path next = *p;
   next.inside = beyond;
   if (from == to) { /* within a later object: nothing is there */
-    w->stack[w->waiting++] = next;
+    push(w, &next, PASSED);
     return;
   }
   const double eta = (from < 0 ? 1 : w->wave->n[from]) / (to < 0 ? 1 : w->wave->n[to]);
@@ -171,11 +185,14 @@ static bool find_next(walk *w, const path *p, abbe_meeting *m) {
   abbe_specular_step *step = &t->step[i];
   memcpy(step->o, p->o, sizeof step->o);
   memcpy(step->d, p->d, sizeof step->d);
-  step->sent[0] = step->sent[1] = 0;
+  step->flux = p->flux;
   step->inside = p->inside;
+  step->from = p->from;
+  step->root = w->root;
+  step->how = p->how;
   if (w->known == NULL || w->known->checks)
     abbe_specular_meet(w->s, p->o, p->d, p->inside, false, ABBE_SPECULAR_NOTHING, w->seen, m);
-  else if (i >= w->known->steps || i > w->known->until ||
+  else if (i >= w->known->steps ||
            !abbe_specular_meet_face(w->s, w->known->step[i].object, w->known->step[i].face, p->o,
                                     p->d, p->inside, m)) {
     t->failed = true;
@@ -225,8 +242,67 @@ static void step(walk *w, path *p) {
   push(w, p, REFLECTED);
 }
 
+/* Where the path goes from there, without its flux. */
+static bool go_on(const walk *w, path *p, const abbe_meeting *m, uint8_t how) {
+  const uint64_t bit = (uint64_t)1 << w->s->surface[m->object].refractor;
+  const uint64_t beyond = p->inside ^ bit;
+  const int from = medium_of(p->inside), to = medium_of(beyond);
+  double n[3], cosine = -abbe_vector_dot(m->n, p->d);
+  const double side = cosine < 0 ? -1 : 1;
+  for (int k = 0; k < 3; k++) {
+    n[k] = side * m->n[k];
+    p->o[k] += m->t * p->d[k];
+  }
+  cosine = fmin(fabs(cosine), 1);
+  if (how == REFLECTED) {
+    reflect(p->d, n, cosine, p->d);
+    return true;
+  }
+  p->inside = beyond;
+  if (how == PASSED) return true;
+  const double towards[3] = {-p->d[0], -p->d[1], -p->d[2]};
+  const double eta = (from < 0 ? 1 : w->wave->n[from]) / (to < 0 ? 1 : w->wave->n[to]);
+  return abbe_optics_refract(towards, n, eta, p->d);
+}
+
+/* The step `known` is followed until, by those before it on its path alone. */
+static void follow_one(walk *w, path *p) {
+  uint32_t chain[2 * ABBE_SPECULAR_MOST_INTERFACES + ABBE_SPECULAR_REFRACTORS];
+  size_t count = 0;
+  for (uint32_t i = (uint32_t)w->known->until; i != ABBE_SPECULAR_NOTHING;
+       i = w->known->step[i].from) {
+    if (count == sizeof chain / sizeof *chain) {
+      w->out->failed = true;
+      return;
+    }
+    chain[count++] = i;
+  }
+  while (count-- > 0) {
+    const abbe_specular_step *known = &w->known->step[chain[count]];
+    abbe_specular_step *to = &w->out->step[chain[count]];
+    memcpy(to->o, p->o, sizeof to->o);
+    memcpy(to->d, p->d, sizeof to->d);
+    to->inside = p->inside;
+    to->object = known->object;
+    to->face = known->face;
+    w->out->steps = chain[count] + 1;
+    abbe_meeting m;
+    if (count == 0) return;
+    if (!abbe_specular_meet_face(w->s, known->object, known->face, p->o, p->d, p->inside, &m) ||
+        !go_on(w, p, &m, w->known->step[chain[count - 1]].how)) {
+      w->out->failed = true;
+      return;
+    }
+  }
+}
+
 /* Follows all paths that wait. */
 static void follow(walk *w) {
+  if (w->known != NULL && w->known->until < w->known->steps &&
+      w->known->step[w->known->until].root == w->root && w->waiting > 0) {
+    follow_one(w, &w->stack[--w->waiting]);
+    w->waiting = 0;
+  }
   while (w->waiting > 0 && !w->out->failed) {
     path p = w->stack[--w->waiting];
     step(w, &p);
@@ -293,7 +369,7 @@ static void emit(walk *w, const double at[4], path *p) {
 static void clear(abbe_specular_tree *t) {
   t->count = t->steps = t->shadows = 0;
   t->signature = 0;
-  t->left = 0;
+  t->left = t->lit = 0;
   memset(t->shown, 0, sizeof t->shown);
   t->whole = true;
   t->until = SIZE_MAX;
@@ -310,6 +386,7 @@ void abbe_specular_trace(const abbe_specular *s, const abbe_specular_wave *wave,
   memcpy(out->at, at, sizeof out->at);
   emit(&w, at, &p);
   out->faint = FAINT * p.flux;
+  p.from = ABBE_SPECULAR_NOTHING;
   if (p.flux > 0) w.stack[w.waiting++] = p;
   follow(&w);
 }
@@ -326,7 +403,7 @@ void abbe_specular_view(const abbe_specular *s, const abbe_specular_wave *wave, 
             .out = out};
   if (root == 0) clear(out);
   out->faint = FAINT;
-  path p = {.flux = 1, .inside = inside};
+  path p = {.flux = 1, .inside = inside, .from = ABBE_SPECULAR_NOTHING};
   memcpy(p.o, o, sizeof p.o);
   memcpy(p.d, d, sizeof p.d);
   w.stack[w.waiting++] = p;

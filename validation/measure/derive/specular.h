@@ -117,17 +117,24 @@ typedef struct abbe_specular_hit {
 } abbe_specular_hit;
 
 /* What a path met, and the ray to it; in the order in which paths are followed. */
+/* What a path does at a surface: a step's bits have what goes on from it. */
+enum { ABBE_SPECULAR_REFRACTED = 1, ABBE_SPECULAR_REFLECTED = 2, ABBE_SPECULAR_PASSED = 4 };
+
 typedef struct abbe_specular_step {
   double o[3], d[3];
-  double sent[2]; /* flux of what is refracted and of what is reflected */
+  double flux; /* that comes */
   uint64_t inside;
   uint32_t object, face;
-  uint8_t on; /* bits: the refracted path goes on, the reflected one does */
+  uint32_t from; /* the step before it; ABBE_SPECULAR_NOTHING: it is the first of its root */
+  uint16_t root; /* a hit's */
+  uint8_t how;   /* what it does at the step before */
+  uint8_t on;
 } abbe_specular_step;
 
 /* A ray to a place that may be hidden, and what hides it. */
 typedef struct abbe_specular_shadow {
   double o[3], d[3];
+  double flux; /* of the path whose end it is of */
   uint32_t object, face;
 } abbe_specular_shadow;
 
@@ -139,9 +146,11 @@ typedef struct abbe_specular_tree {
   double faint;       /* flux below which they end */
   bool whole;         /* all steps and shadows are kept */
   bool failed;        /* a surface that was known is not met any more */
-  size_t until;       /* where it is known: paths end behind the step of that index */
+  size_t until;       /* where it is known: but for that step and those before it on its path none
+                         need be followed; SIZE_MAX: all are */
   bool checks;        /* where it is known: surfaces are searched for, and others are a failure */
   double at[2];       /* on the window or the film */
+  double lit;         /* flux of the path whose shadows are asked for */
   double shown[3];    /* of the camera's paths: the colour that it sees */
   abbe_specular_hit hit[ABBE_SPECULAR_HITS];
   abbe_specular_step step[ABBE_SPECULAR_STEPS];
