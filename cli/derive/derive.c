@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTION_BY = 0x400, OPTION_SPACE };
+enum { OPTION_BY = 0x400, OPTION_SPACE, OPTION_REGION };
 enum { MOST_SIDE = 4096 };
 
 typedef abbe_derive_request request;
@@ -56,6 +56,12 @@ static const abbe_option options[] = {
     {"spp", 0, "N", 0, "samples of each pixel (32)", 1, ABBE_TAKE_COUNT(request, samples, 1, 1e6)},
     {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1,
      ABBE_TAKE_BY_KEY},
+    {"region", OPTION_REGION, "X,Y,W,H", 0,
+     "of the picture: its column, row, width and height, whose means are said (all of it)", 1,
+     ABBE_TAKE_BY_KEY},
+    {"target", 0, "PICTURE.exr", ABBE_ARGUMENT_READS,
+     "of the same size: CIEDE2000 between its region's mean colour and the picture's as well", 1,
+     ABBE_TAKE_TEXT(request, target)},
     {"lines", 0, "N", 0, "across the light's window, or across the view of a stone, in all (1024)",
      1, ABBE_TAKE_COUNT(request, lines, ABBE_DERIVATIVE_PARTS, 1e9)},
     {"points", 0, "N", 0, "of each line (64)", 1, ABBE_TAKE_COUNT(request, points, 2, 1e6)},
@@ -82,6 +88,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
       argp_error(state, "no more than %d keys at a time", ABBE_DERIVE_MOST_KEYS);
     q->key[q->keys++] = text;
     return 0;
+  case OPTION_REGION:
+    abbe_derive_take_region(q, text, state->name);
+    return 0;
   case OPTION_SPACE:
     q->space = (abbe_rgb_space)abbe_command_choice(state->name, "--space", text, spaces,
                                                    ABBE_RGB_SPACE_COUNT);
@@ -92,6 +101,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case ARGP_KEY_END:
     if (q->path == NULL) argp_error(state, "of which scene? Try scenes/prism.yaml");
     if (q->keys == 0) argp_error(state, "by what? Give --by KEY, such as objects.prism.apex");
+    if ((q->region[2] > 0 || q->target != NULL) && (q->stone != NULL || is_of_map(q)))
+      argp_error(state, "--region and --target are of a picture, not of a map or a stone");
     if (q->stone != NULL && (q->exr != NULL || q->width > 0 || q->map.light || q->map.like))
       argp_error(state, "--stone has numbers alone: -o and --map are of pictures and caustics");
     if (q->changes.set_count >= ABBE_SCENE_INPUT_MOST)
@@ -129,18 +140,19 @@ static double map_value(const void *of, size_t number, size_t row, double *error
 }
 
 static const char *picture_name(size_t number) {
-  static const char *const names[] = {"mean.R", "mean.G", "mean.B"};
+  static const char *const names[] = {"mean.R", "mean.G", "mean.B", "ciede2000"};
   return names[number];
 }
 
 static const char *picture_unit(size_t number) {
-  (void)number;
-  return "W/(m2 sr)";
+  return number < 3 ? "W/(m2 sr)" : "";
 }
 
 static double picture_value(const void *of, size_t number, size_t row, double *error) {
+  const abbe_derive_target *t = of;
   double mean[3], deviation[3];
-  abbe_pixels_mean(of, row, mean, deviation);
+  if (number == 3) return abbe_derive_difference(t, row, error);
+  abbe_pixels_mean(t->pixels, row, mean, deviation);
   *error = deviation[number];
   return mean[number];
 }
@@ -318,6 +330,8 @@ static abbe_result derive_picture(request *q, const abbe_scene *scene, const abb
                                   const abbe_spectral_sampling *sampling, abbe_progress *progress,
                                   abbe_error *error) {
   abbe_pixels p = {0};
+  abbe_derive_target target = {.pixels = &p};
+  const size_t *region = q->region;
   const abbe_pixels_desc desc = {.scene = scene,
                                  .keys = q->keys,
                                  .key = key,
@@ -325,6 +339,7 @@ static abbe_result derive_picture(request *q, const abbe_scene *scene, const abb
                                  .space = q->space,
                                  .width = q->columns > 0 ? q->columns : scene->camera.width,
                                  .height = q->rows > 0 ? q->rows : scene->camera.height,
+                                 .region = {region[0], region[1], region[2], region[3]},
                                  .samples = q->samples,
                                  .lines = q->lines,
                                  .points = q->points,
@@ -335,15 +350,17 @@ static abbe_result derive_picture(request *q, const abbe_scene *scene, const abb
                                  .progress = abbe_progress_update,
                                  .user = progress};
   abbe_result result = check_size(q, "picture", desc.width, desc.height, error);
+  if (result == ABBE_OK)
+    result = abbe_derive_read_target(q, desc.width, desc.height, &target, error);
   if (result == ABBE_OK) result = abbe_pixels_make(&desc, &p, error);
   abbe_progress_end(progress);
-  if (result == ABBE_OK) result = write_picture(q, &desc, &p, error);
+  if (result == ABBE_OK && q->exr != NULL) result = write_picture(q, &desc, &p, error);
   const output o = {.q = q,
-                    .count = 3,
+                    .count = q->target != NULL ? 4 : 3,
                     .name = picture_name,
                     .unit = picture_unit,
                     .value = picture_value,
-                    .of = &p,
+                    .of = &target,
                     .felt = p.felt,
                     .left = p.left,
                     .lost = p.lost};
@@ -354,7 +371,7 @@ static abbe_result derive_picture(request *q, const abbe_scene *scene, const abb
 
 static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   abbe_spectral_sampling sampling = {0};
-  const bool picture = q->exr != NULL && !is_of_map(q);
+  const bool picture = (q->exr != NULL || q->region[2] > 0 || q->target != NULL) && !is_of_map(q);
   abbe_derive_moved *moved = calloc(q->keys, sizeof *moved);
   abbe_pixels_key *key = calloc(q->keys, sizeof *key);
   const abbe_spectral_sampling_desc spectrum = {
@@ -402,6 +419,8 @@ static const abbe_parser parser = {
         "  abbe derive scenes/prism.yaml --by objects.prism.apex --by materials.sf10.n\n"
         "  abbe derive scenes/sphere.yaml --by objects.ball.radius --size 128x128 -o ball.exr\n"
         "  abbe derive scenes/sphere.yaml --by objects.ball.radius --map 128x128 -o map.exr\n"
+        "  abbe derive scenes/sphere.yaml --by objects.ball.radius --size 128x128 --region "
+        "60,80,16,16 --target wanted.exr\n"
         "  abbe derive scenes/gem.yaml --by lights.lamp.position.0 --by lights.lamp.intensity "
         "--json\n"
         "  abbe derive scenes/stone.yaml --stone stone --by objects.stone.pavilion --by "

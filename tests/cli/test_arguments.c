@@ -52,6 +52,7 @@ static const struct named {
     {"derive", "", READS},
     {"derive", "output", WRITES},
     {"derive", "map-like", READS},
+    {"derive", "target", READS},
     {"derive", "materials", READS},
     {"derive", "save-scene", WRITES},
     {"plan", "", READS},

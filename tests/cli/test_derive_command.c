@@ -2,7 +2,9 @@
 #include "tests/cli/run_json.h"
 
 #include "base/maths.h"
+#include "colorimetry/difference.h"
 #include "colorimetry/image/exr.h"
+#include "colorimetry/rgb_space.h"
 
 #include <math.h>
 
@@ -91,6 +93,60 @@ TEST(a_picture_by_its_lamps_power) {
     assert_near((double)pixel[channel[2]], (double)pixel[channel[0]],
                 1e-5 * fabs((double)pixel[channel[0]]));
   }
+}
+
+static double ciede2000(const double rgb[3], double by, const double white[3],
+                        const double lab[3]) {
+  double to_xyz[9], xyz[3], own[3];
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, to_xyz);
+  abbe_rgb_space_apply(to_xyz, rgb, xyz);
+  for (int c = 0; c < 3; c++) xyz[c] *= by;
+  abbe_difference_lab(xyz, white, own);
+  return abbe_difference_ciede2000(own, lab);
+}
+
+/* The target is the picture of a lamp of 0.8 W/sr, so that the region's mean is 1.25 times its own,
+ * and grows with the lamp's power. White is the target's brightest pixel, of 64. */
+TEST(a_regions_difference_by_its_lamps_power) {
+#define REGION                                                                                     \
+  DERIVE "--by lights.lamp.intensity --by objects.ball.radius --lines 64 --size 8x8 --spp 4 "
+  run_must(REGION "--set lights.lamp.intensity=0.8 -o wanted.exr -q");
+  HELD(cJSON, json) = run_json(REGION "--region 2,3,4,2 --target wanted.exr --json -q", 0);
+  MADE(abbe_image, image, abbe_exr_read(run_path("wanted.exr"), &image, &error));
+  double rgb[3], target[3], to_xyz[9], xyz[3], white[3] = {0}, lab[3], most = 0;
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, to_xyz);
+  for (size_t i = 0; i < 64; i++) {
+    for (int c = 0; c < 3; c++)
+      rgb[c] =
+          (double)image.data[i * image.channels +
+                             abbe_image_find_channel(&image, (const char *[]){"R", "G", "B"}[c])];
+    abbe_rgb_space_apply(to_xyz, rgb, xyz);
+    most = fmax(most, xyz[1]);
+  }
+  white[0] = most * 0.3127 / 0.3290;
+  white[1] = most;
+  white[2] = most * (1 - 0.3127 - 0.3290) / 0.3290;
+  const cJSON *rows = json_item(json, "rows"), *is = cJSON_GetArrayItem(rows, 0);
+  for (int c = 0; c < 3; c++) {
+    rgb[c] = value(is, (const char *[]){"mean.R", "mean.G", "mean.B"}[c], 0);
+    target[c] = 0.8 * rgb[c];
+  }
+  abbe_rgb_space_apply(to_xyz, target, xyz);
+  abbe_difference_lab(xyz, white, lab);
+  const double h = 1e-4, exact = ciede2000(rgb, 1, white, lab);
+  const double slope =
+      (ciede2000(rgb, 1 + h, white, lab) - ciede2000(rgb, 1 - h, white, lab)) / (2 * h);
+  assert_true(exact > 1 && slope > 1);
+  assert_near(value(is, "ciede2000", 0), exact, 1e-4 * exact);
+  assert_near(value(cJSON_GetArrayItem(rows, 1), "ciede2000", 0), slope, 1e-4 * slope);
+  assert_true(value(is, "ciede2000", 1) > 0);
+  assert_true(value(cJSON_GetArrayItem(rows, 2), "ciede2000", 0) != 0);
+  run_fails(REGION "--region 6,3,4,2 --target wanted.exr", 1, "the picture has 8 x 8 pixels");
+  run_fails(REGION "--region 2,3,4 --target wanted.exr", 2, "X,Y,W,H is wanted");
+  run_fails(REGION "--region 2,3,0,2", 2, "X,Y,W,H is wanted");
+  run_fails(REGION "--size 9x8 --target wanted.exr", 1, "give --size 8x8");
+  run_fails(REGION "--map 8x8 -o map.exr --target wanted.exr", 2, "are of a picture");
+  run_fails(REGION "--target nowhere.exr", 1, "nowhere.exr");
 }
 
 /* A pane seen from straight above returns R + (1 - R)^2 R T^2 / (1 - R^2 T^2) of the light, and so

@@ -183,6 +183,11 @@ abbe_result abbe_compare(const abbe_field *reference, const abbe_field *test,
                          abbe_error *error);
 void abbe_comparison_free(abbe_comparison *comparison);
 
+/* D65 at the Y that the brightest 1 % of the field's lit pixels reach; bad (may be NULL): not of
+ * pixels where it is not 0. ABBE_NO_MEMORY. */
+abbe_result abbe_compare_white(const abbe_field *field, const uint8_t *bad, double white[3],
+                               abbe_error *error);
+
 /* How far from equal: |value - 1| of an energy ratio and of SSIM, else the value. What tolerances
  * bound. */
 double abbe_compare_deviation(abbe_compare_metric metric, double value);

@@ -296,23 +296,23 @@ static void find_d65(abbe_observer observer, double xyz[3]) {
     abbe_weights_white(observer, &table, ABBE_OBSERVER_MIN_NM, ABBE_OBSERVER_MAX_NM, xyz);
 }
 
-/* D65 at the Y that the brightest 1 % of the lit pixels reach. */
-static abbe_result find_white(const abbe_compare_state *s, double white[3], abbe_error *error) {
-  float *lit = malloc(s->pixels * sizeof *lit);
+abbe_result abbe_compare_white(const abbe_field *field, const uint8_t *bad, double white[3],
+                               abbe_error *error) {
+  const size_t pixels = field->width * field->height;
+  float *lit = malloc(pixels * sizeof *lit);
   if (lit == NULL)
-    return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory to sort %zu pixels",
-                          s->pixels);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory to sort %zu pixels", pixels);
   size_t count = 0;
-  for (size_t p = 0; p < s->pixels; p++) {
+  for (size_t p = 0; p < pixels; p++) {
     double xyz[3];
-    abbe_field_xyz(s->reference, p, xyz, NULL);
-    if (s->bad[p] == 0 && xyz[1] > 0) lit[count++] = (float)xyz[1];
+    abbe_field_xyz(field, p, xyz, NULL);
+    if ((bad == NULL || bad[p] == 0) && xyz[1] > 0) lit[count++] = (float)xyz[1];
   }
   qsort(lit, count, sizeof *lit, abbe_order_descending_floats);
   double y = count > 0 ? (double)lit[count / 100] : 0;
   free(lit);
   double d65[3];
-  find_d65(s->reference->observer, d65);
+  find_d65(field->observer, d65);
   for (int c = 0; c < 3; c++) white[c] = y * d65[c];
   return ABBE_OK;
 }
@@ -344,5 +344,5 @@ abbe_result abbe_compare_find_units(abbe_compare_state *s, abbe_error *error) {
   if (!colour) return ABBE_OK;
   out->white_found = white[0] == 0 && white[1] == 0 && white[2] == 0;
   for (int c = 0; c < 3; c++) out->white[c] = white[c];
-  return out->white_found ? find_white(s, out->white, error) : ABBE_OK;
+  return out->white_found ? abbe_compare_white(s->reference, s->bad, out->white, error) : ABBE_OK;
 }

@@ -284,8 +284,17 @@ static void take_part(const work *w, size_t index, const part *p, double (*mean)
     for (int c = 0; c < 3; c++) {
       mean[i][c] += p->picture[i][c] / PARTS;
       square[i][c] += p->picture[i][c] * p->picture[i][c] / PARTS;
-      out->mean[i / out->pixels][index][c] += p->picture[i][c] / (double)out->pixels;
     }
+  const abbe_pixels_desc *q = w->q;
+  const bool all = q->region[2] == 0;
+  const size_t left = all ? 0 : q->region[0], top = all ? 0 : q->region[1];
+  const size_t wide = all ? q->width : q->region[2], high = all ? q->height : q->region[3];
+  for (size_t i = 0; i < (1 + q->keys) * wide * high; i++) {
+    const size_t row = i / (wide * high), x = left + i % wide, y = top + i / wide % high;
+    for (int c = 0; c < 3; c++)
+      out->mean[row][index][c] +=
+          p->picture[row * out->pixels + y * q->width + x][c] / (double)(wide * high);
+  }
   add_sums(&p->sums, w->q->keys, sums);
 }
 

@@ -29,6 +29,7 @@ typedef struct abbe_pixels_desc {
   const abbe_spectral_sampling *sampling;
   abbe_rgb_space space;
   size_t width, height;
+  size_t region[4];     /* of means: column and row of its corner, and its size; 0: all pixels */
   size_t samples;       /* a pixel, at least 1 */
   size_t lines, points; /* of each lamp, as in abbe_derivative_desc */
   size_t map_side;      /* of lamps' maps for what is seen through refractors and in mirrors */
@@ -43,7 +44,7 @@ typedef struct abbe_pixels {
   size_t keys, pixels;
   float (*value)[3]; /* [1 + keys][pixels] RGB: the picture, and by each key's unit; owned */
   float (*error)[3]; /* likewise: standard errors; owned */
-  double (*mean)[ABBE_DERIVATIVE_PARTS][3]; /* [1 + keys] of all pixels, by parts; owned */
+  double (*mean)[ABBE_DERIVATIVE_PARTS][3]; /* [1 + keys] of the region, by parts; owned */
   bool *felt;                               /* [keys]; owned */
   double left; /* share of what the camera and lamps see that lies on paths that are left out */
   double lost; /* share of the light that jumps whose motion was not found */
@@ -54,7 +55,7 @@ typedef struct abbe_pixels {
 abbe_result abbe_pixels_make(const abbe_pixels_desc *desc, abbe_pixels *out, abbe_error *error);
 void abbe_pixels_free(abbe_pixels *pixels);
 
-/* The picture's mean (row 0) or its derivative, RGB, and its standard error. */
+/* The region's mean (row 0) or its derivative, RGB, and its standard error. */
 void abbe_pixels_mean(const abbe_pixels *pixels, size_t row, double mean[3], double error[3]);
 
 #endif
