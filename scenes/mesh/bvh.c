@@ -249,23 +249,28 @@ static double enter(const abbe_bvh_node *node, const double o[3], const double i
   for (int k = 0; k < 3; k++) {
     double a = ((double)node->min[k] - o[k]) * inverse[k];
     double b = ((double)node->max[k] - o[k]) * inverse[k];
-    from = fmax(from, fmin(a, b));
-    to = fmin(to, fmax(a, b));
+    from = most(from, least(a, b));
+    to = least(to, most(a, b));
   }
   return from <= to ? from : INFINITY;
 }
 
 bool abbe_bvh_trace(const abbe_bvh *h, const double (*triangle)[9], const double o[3],
                     const double d[3], int side, double t_min, double t_max, abbe_bvh_hit *hit) {
-  const abbe_bvh_node *stack[ABBE_BVH_MAX_DEPTH + 1];
+  struct {
+    const abbe_bvh_node *node;
+    double from;
+  } stack[ABBE_BVH_MAX_DEPTH + 1];
   size_t waiting = 0;
   double inverse[3];
   bool found = false;
   for (int k = 0; k < 3; k++) inverse[k] = 1 / (fabs(d[k]) > 1e-30 ? d[k] : copysign(1e-30, d[k]));
-  stack[waiting++] = h->node;
+  stack[0].node = h->node;
+  stack[0].from = enter(h->node, o, inverse, t_min, t_max);
+  if (!isinf(stack[0].from)) waiting++;
   while (waiting > 0) {
-    const abbe_bvh_node *node = stack[--waiting];
-    if (isinf(enter(node, o, inverse, t_min, t_max))) continue;
+    const abbe_bvh_node *node = stack[--waiting].node;
+    if (stack[waiting].from > t_max) continue;
     for (int i = 0; i < node->count; i++) {
       uint32_t index = h->triangle[node->first + i];
       if (!abbe_bvh_meet(triangle[index], o, d, side, t_min, t_max, hit)) continue;
@@ -274,10 +279,16 @@ bool abbe_bvh_trace(const abbe_bvh *h, const double (*triangle)[9], const double
       found = true;
     }
     if (node->count > 0) continue;
-    const abbe_bvh_node *a = h->node + node->first, *b = a + 1;
-    bool b_first = enter(b, o, inverse, t_min, t_max) < enter(a, o, inverse, t_min, t_max);
-    stack[waiting++] = b_first ? a : b;
-    stack[waiting++] = b_first ? b : a;
+    const abbe_bvh_node *a = h->node + node->first;
+    const double from[2] = {enter(a, o, inverse, t_min, t_max),
+                            enter(a + 1, o, inverse, t_min, t_max)};
+    const int near = from[1] < from[0];
+    for (int i = 0; i < 2; i++) {
+      const int child = i == 0 ? !near : near;
+      if (isinf(from[child])) continue;
+      stack[waiting].node = a + child;
+      stack[waiting++].from = from[child];
+    }
   }
   return found;
 }
