@@ -420,14 +420,17 @@ abbe_result abbe_specular_narrow(abbe_specular *s, double min_nm, double max_nm,
   for (int i = 0; i < COLOURS; i++)
     ABBE_TRY(abbe_specular_wave_make(s, min_nm + (max_nm - min_nm) * i / (COLOURS - 1), &wave[i],
                                      error));
-  for (int i = 0; i < SIDE * SIDE; i++) {
+  for (int k = 0; k < SIDE * SIDE; k++) {
+    /* Far apart first: within what is known to be looked through there is nothing to find. */
+    const int i = (int)((unsigned)k * 40503u % (SIDE * SIDE));
     /* places on the light and colours by multiples of irrational numbers */
     const double at[4] = {(i % SIDE + 0.5) / SIDE, (i / SIDE + 0.5) / SIDE,
                           fmod(i * 0.7548776662466927, 1), fmod(i * 0.5698402909980532, 1)};
+    if (at[0] >= low[0] && at[0] <= high[0] && at[1] >= low[1] && at[1] <= high[1]) continue;
     abbe_specular_trace(s, &wave[(i + i / SIDE) % COLOURS], at, interfaces, NULL, tree);
-    for (int k = 0; k < 2 && tree->count > 0; k++) {
-      low[k] = fmin(low[k], at[k]);
-      high[k] = fmax(high[k], at[k]);
+    for (int axis = 0; axis < 2 && tree->count > 0; axis++) {
+      low[axis] = fmin(low[axis], at[axis]);
+      high[axis] = fmax(high[axis], at[axis]);
     }
   }
   for (int k = 0; k < 2 && low[k] <= high[k]; k++) {
