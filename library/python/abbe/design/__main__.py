@@ -31,6 +31,7 @@ VEIL = 0.02  # of the even light, the least that falls everywhere: light cannot 
 SIDES = 16, 1024
 LUMINANCE = (0.2126, 0.7152, 0.0722)  # of linear Rec.709
 BLACK = 0.002  # of white; margins that are darker get no light at all
+SLACK = 1.25  # by which a cut is beyond its limits when its design stops before the end
 SAMPLES = 7  # wavelengths of the picture that is predicted
 
 
@@ -169,21 +170,39 @@ def _wanted(q, picture, box):
     return white * lit + (1 - white * picture.mean()) * picture.size / lit.size
 
 
-def _limits(q, face):
-    """The depth and the least radius of a dip; refused where they cannot be cut."""
+def _limits(q, face, slack=1):
+    """The depth and the least radius of a dip; refused where they cannot be cut, be it by less than
+    the slack."""
     depth, radius = float(np.ptp(face.h)), float(pane.dip_radius(face))
-    if q.depth is not None and depth > q.depth:
-        raise pane.Refused(f"the cut is {1e3 * depth:.3g} mm deep, and --depth is "
+    so_far = "without the picture's details " if slack > 1 else ""
+    if q.depth is not None and depth > slack * q.depth:
+        raise pane.Refused(f"{so_far}the cut is {1e3 * depth:.3g} mm deep, and --depth is "
                            f"{1e3 * q.depth:g} mm; a larger --distance, a smaller --size or a "
                            "darker --white makes it flatter")
-    if q.radius is not None and radius < q.radius:
-        raise pane.Refused(f"the smallest dip has a radius of {1e3 * radius:.3g} mm, and --radius is "
-                           f"{1e3 * q.radius:g} mm; a larger --distance or a darker --white makes "
+    if q.radius is not None and slack * radius < q.radius:
+        raise pane.Refused(f"{so_far}the smallest dip has a radius of {1e3 * radius:.3g} mm, and "
+                           f"--radius is {1e3 * q.radius:g} mm; a larger --distance or a darker --white makes "
                            "it rounder")
-    if face.h.max() > 0.9 * q.thickness:
-        raise pane.Refused(f"the cut goes {1e3 * face.h.max():.3g} mm deep from the mean face, through "
-                           f"a pane that is {1e3 * q.thickness:g} mm thick; make --thickness larger")
+    if face.h.max() > slack * 0.9 * q.thickness:
+        raise pane.Refused(f"{so_far}the cut goes {1e3 * face.h.max():.3g} mm deep from the mean face, "
+                           f"through a pane that is {1e3 * q.thickness:g} mm thick; make --thickness or "
+                           "--distance larger")
     return depth, radius
+
+
+def _designed(q, wanted, setup, n):
+    """pane.design, which stops as soon as the cut is clearly beyond what can be made."""
+    on = not q.quiet and sys.stderr.isatty()
+
+    def progress(done, face):
+        if on:
+            print(f"\rpane {100 * done:3.0f} %", end="", file=sys.stderr, flush=True)
+        _limits(q, face, SLACK)
+    try:
+        return pane.design(wanted, setup, n, progress=progress)
+    finally:
+        if on:
+            print("\r\033[K", end="", file=sys.stderr)
 
 
 def _predict(setup, face, material):
@@ -248,12 +267,7 @@ def _pane(argv):
         raise pane.Refused(f"--cells {cells}: a picture of {columns} x {rows} pixels has "
                            f"{round(cells * rows / columns)} of them down; 16 to 2048 are right")
     setup = pane.Setup(picture.shape, q.size, q.distance, q.thickness, q.light, q.picture, cells)
-    on = not q.quiet and sys.stderr.isatty()
-    face = pane.design(wanted, setup.part(*box), n, progress=lambda done: on and print(
-        f"\rpane {100 * done:3.0f} %", end="", file=sys.stderr, flush=True))
-    if on:
-        print("\r\033[K", end="", file=sys.stderr)
-    face = pane.Face(setup, face.h, n)
+    face = pane.Face(setup, _designed(q, wanted, setup.part(*box), n).h, n)
     depth, radius = _limits(q, face)
     rgb, blur = _predict(setup, face, material)
     same = abbe.compare(_grey(picture), _grey(rgb @ LUMINANCE), best_scale=True, structure=True)

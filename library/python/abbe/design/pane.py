@@ -24,6 +24,10 @@ class Refused(Exception):
     """A pane that cannot be; a sentence says why, and what would do."""
 
 
+TURNED_BACK = ("the picture is too large, too near or too far aside: light would have to leave the glass "
+               "beyond the critical angle; make --picture smaller or --distance larger")
+
+
 def mirrored(values, factor):
     """values convolved by what multiplies its cosines: factor(ky, kx), radians a sample."""
     rows, columns = values.shape
@@ -116,7 +120,8 @@ class Setup:
 
     def land(self, h, p, q, entry, n):
         """Where rays meet the screen, in pixels of the picture (column, row), for the slopes p, q;
-        the flux that each place of the face sends there; and whether any was turned back."""
+        the flux that each place of the face sends there; and whether any was turned back, or starts
+        behind the screen."""
         dx, dy, down, flux = entry
         long = np.sqrt(1 + p * p + q * q)
         cosine = (dx * p + dy * q + down) / long
@@ -127,7 +132,8 @@ class Setup:
         rows, columns = self.shape
         return ((self.x + (n * dx + k * p) * far - self.middle[0]) / self.pixel + columns / 2,
                 (self.y + (n * dy + k * q) * far - self.middle[1]) / self.pixel + rows / 2,
-                flux * long * cosine / down * fresnel(cosine, out, n, 1), np.min(square) <= 1e-6)
+                flux * long * cosine / down * fresnel(cosine, out, n, 1),
+                np.min(square) <= 1e-6 or np.min(h) <= -self.distance)
 
 
 class Face:
@@ -272,8 +278,30 @@ def newton(face, wanted, steps):
                 face = new
                 break
         else:
+            if new.turned_back:
+                raise Refused(TURNED_BACK)
             break
     return face
+
+
+def reachable(face, target):
+    """Refuses a target that no cut throws. Whatever map lays the light out, some of it goes as far
+    aside as quantiles of the pane's and the target's columns, or rows, are apart; a face bends no
+    ray by more than the critical angle's complement."""
+    setup, flux = face.setup, average(face.flux)
+    aside = 0
+    for axis, at in ((0, setup.x[0]), (1, setup.y[:, 0])):
+        has, wants = (np.append(0, np.cumsum(a.sum(axis))) for a in (flux, target))
+        has, wants = has / has[-1], wants / wants[-1]
+        side = target.shape[1 - axis]
+        where = setup.middle[axis] + (np.arange(side + 1) - side / 2) * setup.pixel
+        share = np.union1d(has, wants)
+        aside = max(aside, np.abs(np.interp(share, wants, where) - np.interp(share, has, at)).max())
+    steepest = np.arccos(face.entry[2].min()) + np.arccos(1 / face.n)
+    if steepest < np.pi / 2 and aside > (setup.distance + setup.thickness) * np.tan(steepest):
+        raise Refused(f"light has to go {1e3 * aside:.3g} mm aside, further than glass can bend it up to "
+                      "the critical angle; make --distance much larger than "
+                      f"{1e3 * aside / np.tan(steepest):.3g} mm")
 
 
 def start(setup, n):
@@ -356,18 +384,18 @@ def design(target, setup, n, refine=3, progress=None):
     """The face that throws target, light a pixel in units of the even light's, above 0 everywhere,
     with the index n. refine: how often what it throws is compared with the target, and the density
     that is sought is corrected; the best face of all is kept. progress is called with the share
-    done."""
+    done and the face, whose depth and bends grow with the picture's details."""
     columns = target.shape[1]
     blurs = [blur * columns for blur in BLURS if blur * columns > 0.3]
     stages = [(blurred(target, blur), 2) for blur in blurs] + [(target, 6)]
+    reachable(Face(setup, np.zeros_like(setup.x), n), target)
     face = start(setup, n)
     if face.turned_back:
-        raise Refused("the picture is too large or too far aside: light would have to leave the glass "
-                      "beyond the critical angle; make --picture smaller or --distance larger")
+        raise Refused(TURNED_BACK)
     for done, stage in enumerate(stages):
         face = newton(face, *stage)
         if progress:
-            progress((done + 1) / (len(stages) + refine))
+            progress((done + 1) / (len(stages) + refine), face)
     best, wanted, least = face, target, np.inf
     for done in range(refine + 1):
         seen = thrown(face)
@@ -381,4 +409,4 @@ def design(target, setup, n, refine=3, progress=None):
         wanted = wanted * np.clip(ratio, 0.5, 2)**0.5
         face = newton(face, wanted * (target.sum() / wanted.sum()), 2)
         if progress:
-            progress((len(stages) + done + 1) / (len(stages) + refine))
+            progress((len(stages) + done + 1) / (len(stages) + refine), face)

@@ -64,7 +64,7 @@ def stl(face):
 
 def scene(setup, mesh, table, material, name):
     """The text of a scene in which the pane's light falls on a screen that fills the picture."""
-    x, y = setup.middle[0], -setup.middle[1]
+    x, y = setup.middle[0], 0 - setup.middle[1]  # no -0
     rows, columns = setup.shape
     high = 0.8 * setup.distance
     light = ("kind: directional\n    direction: [0, 0, -1]\n    irradiance: 1" if setup.lamp is None
