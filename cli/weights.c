@@ -13,7 +13,7 @@ typedef struct request {
   double min_nm, max_nm;
   abbe_rgb_space space;
   abbe_observer observer;
-  bool thesis, chosen, json; /* chosen: something that the set `thesis` fixes was requested */
+  bool thesis, chosen, json; /* chosen: a range, observer or space was requested */
 } request;
 
 static const char *const component_names[ABBE_RGB_SPACE_COUNT][3] = {
@@ -107,7 +107,8 @@ static abbe_result print_weights(const request *r, abbe_error *error) {
   return print_table(r, &t, error);
 }
 
-enum { KEY_COUNT = 256, KEY_RANGE, KEY_OBSERVER, KEY_SPACE, KEY_SET };
+enum { DEFAULT_COUNT = 7 };
+enum { KEY_RANGE = 256, KEY_OBSERVER, KEY_SPACE, KEY_SET };
 
 static const abbe_option options[] = {
     {"count", 0, "N", 0, "wavelength samples, 1 to 4096; without it, 7", 0,
@@ -134,7 +135,7 @@ static abbe_rgb_space choose_space(const request *r, const char *word) {
 static error_t parse(int key, char *arg, struct argp_state *state) {
   static const char *const sets[] = {"cie", "thesis"};
   request *r = state->input;
-  r->chosen = r->chosen || (key >= KEY_COUNT && key <= KEY_SPACE);
+  r->chosen = r->chosen || key == KEY_RANGE || key == KEY_OBSERVER || key == KEY_SPACE;
   switch (key) {
   case KEY_RANGE:
     abbe_command_range(r->program, "--range", arg, &r->min_nm, &r->max_nm);
@@ -153,9 +154,11 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     argp_error(state, "'%s' is one argument too many", arg);
     return 0;
   case ARGP_KEY_END:
-    if (r->thesis && r->chosen)
+    if (r->thesis && (r->chosen || r->count > 0 || r->illuminant != NULL))
       argp_error(state, "--set thesis fixes its samples; it goes without --count, --range, "
                         "--illuminant, --observer and --space");
+    if (r->count == 0) r->count = DEFAULT_COUNT;
+    if (r->illuminant == NULL) r->illuminant = "D65";
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -179,8 +182,6 @@ static const abbe_parser parser = {
 
 int abbe_command_weights(int argc, char **argv) {
   request r = {.program = argv[0],
-               .illuminant = "D65",
-               .count = 7,
                .min_nm = ABBE_WAVELENGTH_MIN_NM,
                .max_nm = ABBE_WAVELENGTH_MAX_NM,
                .space = ABBE_RGB_SPACE_XYZ};
