@@ -19,9 +19,10 @@
   "camera: {eye: [0, -9, 9], target: [0, 0, -1]}\n"                                                \
   "lights: [{name: sun, kind: directional, direction: [%.17g, 0, %.17g], irradiance: 1,\n"         \
   "          illuminant: E}]\nobjects:\n"
-#define FLOOR                                                                                      \
+#define FLOOR_AT(z)                                                                                \
   "- {name: floor, shape: rectangle, width: 40, height: 40, reflectance: 0.5,\n"                   \
-  "   transform: [{translate: [0, 0, -1]}]}\n"
+  "   transform: [{translate: [0, 0, " z "]}]}\n"
+#define FLOOR FLOOR_AT("-1")
 #define WALL                                                                                       \
   "- {name: wall, shape: rectangle, width: 40, height: 40, reflectance: 0.5, transform:\n"         \
   "   [{rotate: {axis: [0, 1, 0], angle: 90}}, {translate: [5, 0, 0]}]}\n"
@@ -44,9 +45,9 @@
   "- {name: cup, shape: lathe, around: 4096, profile: [[" radius ", -0.1], [" radius               \
   ", 0.1]], mirror: 1}\n"
 
-#define MIRROR_AT_45(width)                                                                        \
+#define MIRROR_AT(angle, width)                                                                    \
   "- {name: facet, shape: rectangle, width: " width ", height: 0.05, mirror: 1,\n"                 \
-  "   transform: [{rotate: {axis: [0, 1, 0], angle: 45}}]}\n"
+  "   transform: [{rotate: {axis: [0, 1, 0], angle: " angle "}}]}\n"
 /* A pane and, below or above it, a receiver of 5 cm. */
 #define PANE(width, z)                                                                             \
   "- {name: pane, shape: box, size: [0.1, 0.1, 0.01], material: n-bk7}\n"                          \
@@ -358,6 +359,11 @@ static double facet_by_width(const abbe_material *glass) {
   return 0.05 * cos(45 * ABBE_DEGREE);
 }
 
+static double steep_by_floor(const abbe_material *glass) {
+  (void)glass;
+  return -0.05 / tan(60 * ABBE_DEGREE);
+}
+
 static double plate_by_width(const abbe_material *glass) {
   return 0.05 * passed_of(glass, 0, ABBE_DERIVATIVE_FLUX);
 }
@@ -411,8 +417,10 @@ static double y_by_b(const abbe_material *glass) {
 }
 
 static const edge_row edges[] = {
-    {"light off a mirror at 45 degrees by its width", "W/m", HEAD WALL MIRROR_AT_45("%.17g"), 0.05,
-     ABBE_DERIVATIVE_FLUX, facet_by_width},
+    {"light off a mirror at 45 degrees by its width", "W/m", HEAD WALL MIRROR_AT("45", "%.17g"),
+     0.05, ABBE_DERIVATIVE_FLUX, facet_by_width},
+    {"light off a mirror that stands in a floor by the floor's height", "W/m",
+     HEAD FLOOR_AT("%.17g") MIRROR_AT("60", "4"), -1, ABBE_DERIVATIVE_FLUX, steep_by_floor},
     {"light on a plate behind a pane by the plate's width", "W/m", HEAD PANE("%.17g", "-0.1"), 0.05,
      ABBE_DERIVATIVE_FLUX, plate_by_width},
     {"light through a pane by the width of a plate before it", "W/m",

@@ -80,6 +80,20 @@ static void between_rays(const abbe_specular *s, const ray *a, const ray *b, abb
     outline(s, b, a, e);
 }
 
+/* In a corner a path may leave one surface nearer to another than rays begin: what jumps there is
+ * which of the two is met first. */
+static bool is_corner(const abbe_specular *s, const abbe_specular_step *from, const ray *to,
+                      abbe_edge *e) {
+  if (to->object >= ABBE_SPECULAR_LAMP || way_to(s, to) > 2 * ABBE_SPECULAR_LEAVE * s->far)
+    return false;
+  e->kind = ABBE_EDGE_CROSSING;
+  e->object[0] = from->object;
+  e->object[1] = to->object;
+  e->face[0] = from->face;
+  e->face[1] = to->face;
+  return true;
+}
+
 /* ---- two trees side by side ---- */
 
 typedef struct comparison {
@@ -155,6 +169,12 @@ abbe_edge abbe_edge_between(const abbe_specular *s, const abbe_specular_tree *be
   e.flux = c.flux;
   if (c.most > 0) {
     const ray a = ray_of_step(&below->step[c.at[0]]), b = ray_of_step(&above->step[c.at[1]]);
+    const uint32_t from = below->step[c.at[0]].from;
+    if (from != ABBE_SPECULAR_NOTHING &&
+        (is_corner(s, &below->step[from], &a, &e) || is_corner(s, &below->step[from], &b, &e))) {
+      e.index = from;
+      return e;
+    }
     e.index = c.at[0];
     between_rays(s, &a, &b, &e);
     return e;

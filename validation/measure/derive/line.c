@@ -238,7 +238,8 @@ static void change_by_jump(const abbe_line *l, const span *j, const abbe_edge *e
     square = slope[0] * slope[0] + slope[1] * slope[1];
   }
   l->to->jumps += size;
-  if (!(square > 0)) {
+  /* An edge's function is 0 where light jumps at it; where it is not, something else jumps. */
+  if (!(square > 0) || !(fabs(here) < 10 * CLOSE * sqrt(square) + 1e-13 * l->base->far)) {
     l->to->lost += size;
     return;
   }

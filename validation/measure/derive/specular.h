@@ -35,7 +35,8 @@ typedef struct abbe_specular_surface {
   uint32_t *numbered;    /* [exact.count] and the planes of the numbers; owned */
   double (*triangle)[9]; /* [triangles] of all others but spheres, owned */
   abbe_bvh bvh;
-  bool flat; /* triangles have one normal each */
+  uint32_t *sheet; /* [triangles] of a mesh with smooth normals, owned: those that share vertices
+                      have one number, and light is bent alike over them; NULL: each its own */
 } abbe_specular_surface;
 
 /* Whether it is met as planes. */

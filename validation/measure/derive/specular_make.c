@@ -56,6 +56,27 @@ static bool is_flat(const abbe_mesh *mesh) {
   return true;
 }
 
+static uint32_t root_of(uint32_t *of, uint32_t v) {
+  while (of[v] != v) v = of[v] = of[of[v]];
+  return v;
+}
+
+static abbe_result make_sheets(const abbe_mesh *mesh, abbe_specular_surface *s, abbe_error *error) {
+  if (is_flat(mesh)) return ABBE_OK;
+  uint32_t *of = malloc((mesh->vertex_count + 1) * sizeof *of);
+  s->sheet = malloc((mesh->face_count + 1) * sizeof *s->sheet);
+  if (of == NULL || s->sheet == NULL) {
+    free(of);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for triangles");
+  }
+  for (size_t v = 0; v < mesh->vertex_count; v++) of[v] = (uint32_t)v;
+  for (size_t f = 0; f < mesh->face_count; f++)
+    for (int k = 1; k < 3; k++) of[root_of(of, mesh->face[f][k])] = root_of(of, mesh->face[f][0]);
+  for (size_t f = 0; f < mesh->face_count; f++) s->sheet[f] = root_of(of, mesh->face[f][0]);
+  free(of);
+  return ABBE_OK;
+}
+
 static abbe_result fill(const abbe_object *o, abbe_specular_surface *s, abbe_error *error) {
   const size_t planes = o->exact.count;
   s->object = o;
@@ -69,8 +90,8 @@ static abbe_result fill(const abbe_object *o, abbe_specular_surface *s, abbe_err
     return ABBE_OK;
   }
   s->triangle = abbe_bvh_triangles(&o->mesh);
-  s->flat = is_flat(&o->mesh);
   if (s->triangle == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for triangles");
+  ABBE_TRY(make_sheets(&o->mesh, s, error));
   return abbe_bvh_make((const double(*)[9])s->triangle, o->mesh.face_count, &s->bvh, error);
 }
 
@@ -149,6 +170,7 @@ void abbe_specular_free(abbe_specular *s) {
     free(s->surface[i].plane);
     free(s->surface[i].numbered);
     free(s->surface[i].triangle);
+    free(s->surface[i].sheet);
     abbe_bvh_free(&s->surface[i].bvh);
   }
   free(s->surface);

@@ -85,8 +85,9 @@ uint32_t abbe_specular_face(const abbe_specular *s, uint32_t object, uint32_t fa
   if (object >= ABBE_SPECULAR_LAMP) return 0;
   const abbe_specular_surface *of = &s->surface[object];
   if (of->triangle == NULL) return face;
-  const bool receiver = abbe_object_kind_of(of->object) == ABBE_OBJECT_RECEIVER;
-  return (receiver ? of->object->mesh.face_count <= 2 : !of->flat) ? 0 : face;
+  if (abbe_object_kind_of(of->object) == ABBE_OBJECT_RECEIVER)
+    return of->object->mesh.face_count <= 2 ? 0 : face;
+  return of->sheet != NULL ? of->sheet[face] : face;
 }
 
 /* Where the ray meets a light's plane; side: there, of its radius or its half edges. */
