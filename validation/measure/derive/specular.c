@@ -290,6 +290,7 @@ static void follow_one(walk *w, path *p) {
     if (count == 0) return;
     if (!abbe_specular_meet_face(w->s, known->object, known->face, p->o, p->d, p->inside, &m) ||
         !go_on(w, p, &m, w->known->step[chain[count - 1]].how)) {
+      w->out->steps = chain[count]; /* no ray comes to the last one */
       w->out->failed = true;
       return;
     }

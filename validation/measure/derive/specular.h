@@ -117,10 +117,10 @@ typedef struct abbe_specular_hit {
   uint16_t met, root; /* interfaces; 0, or of paths from an earlier hit its index and 1 */
 } abbe_specular_hit;
 
-/* What a path met, and the ray to it; in the order in which paths are followed. */
 /* What a path does at a surface: a step's bits have what goes on from it. */
 enum { ABBE_SPECULAR_REFRACTED = 1, ABBE_SPECULAR_REFLECTED = 2, ABBE_SPECULAR_PASSED = 4 };
 
+/* What a path met, and the ray to it; in the order in which paths are followed. */
 typedef struct abbe_specular_step {
   double o[3], d[3];
   double flux; /* that comes */

@@ -69,10 +69,10 @@ void abbe_photon_grid_gather(const abbe_photon_grid *grid, const float p[3], flo
 /* Variance times rays is about least with it, in cut stones, prisms and rings. */
 #define ABBE_EYE_LEAST_BRANCH 0.4f
 
-/* All that a walk reads; nothing is written. */
 /* A mirror image is tinted by so many wavelengths, each for its share of all parts. */
 enum { ABBE_EYE_MIRRORED = 8, ABBE_EYE_PARTS = 128 };
 
+/* All that a walk reads; nothing is written. */
 typedef struct abbe_eye_walk {
   const abbe_geometry *geometry;
   const abbe_media *media;
