@@ -171,8 +171,8 @@ def _wanted(q, picture, box):
 
 
 def _limits(q, face, slack=1):
-    """The depth and the least radius of a dip; refused where they cannot be cut, be it by less than
-    the slack."""
+    """The depth and the least radius of a dip; refused where they cannot be cut, by more
+    than the slack."""
     depth, radius = float(np.ptp(face.h)), float(pane.dip_radius(face))
     so_far = "without the picture's details " if slack > 1 else ""
     if q.depth is not None and depth > slack * q.depth:
