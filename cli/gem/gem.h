@@ -74,7 +74,7 @@ typedef struct abbe_gem_report_page {
 
 /* photo: a PNG, or NULL. ideal: a design, whose angles become those of the stone's index; NULL:
  * the angles of a brilliant for a round one, else those of 49 pairs that return most light. Errors
- * as abbe_cut_file_read_stone, abbe_png_read and abbe_gem_optimum_find. */
+ * as abbe_cut_file_read_stone, abbe_png_read_over_white and abbe_gem_optimum_find. */
 abbe_result abbe_gem_report_page_make(const abbe_gem_stone_input *input,
                                       const abbe_gem_view_desc *view, const char *photo,
                                       const char *ideal, abbe_gem_report_page *out,

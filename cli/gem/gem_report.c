@@ -23,8 +23,9 @@ static const abbe_option options[] = {
      "maps.exr and a PNG of each map, into a folder that is there", 0,
      ABBE_TAKE_TEXT(request, maps)},
     {"picture", 0, "FILE.png", ABBE_ARGUMENT_READS,
-     "of the stone, by abbe render, for the first page of -o; without it, its light return", 0,
-     ABBE_TAKE_TEXT(request, picture)},
+     "of the stone, by abbe render, for the first page of -o, on its white where it is "
+     "transparent; without it, its light return",
+     0, ABBE_TAKE_TEXT(request, picture)},
     {"ideal", 0, "FILE", ABBE_ARGUMENT_READS,
      "design that stands beside it on that page; without it, angles of an ideal round "
      "brilliant, or those that return most light",

@@ -171,7 +171,8 @@ abbe_result abbe_gem_report_page_make(const abbe_gem_stone_input *in,
   fine.side = abbe_media_is_crystal(&in->stone.media, 0) ? SIDE : GLASS_SIDE;
   fine.repeats = abbe_media_is_crystal(&in->stone.media, 0) ? 8 : 4;
   memset(out, 0, sizeof *out);
-  abbe_result result = photo != NULL ? abbe_png_read(photo, &out->photo, error) : ABBE_OK;
+  abbe_result result =
+      photo != NULL ? abbe_png_read_over_white(photo, &out->photo, error) : ABBE_OK;
   if (result == ABBE_OK) result = make_light(in, WAVELENGTHS, &l, error);
   if (result == ABBE_OK)
     result = abbe_gem_stone_make(&in->in.cut, &in->in.stone, in->in.material, &l.wavelengths,

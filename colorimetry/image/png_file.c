@@ -27,6 +27,7 @@ typedef struct job {
   int bits, samples; /* a row's pixel in memory */
   void *icc;         /* to be written; of three channels that are not in sRGB */
   size_t icc_size;
+  bool over_white; /* reads what is transparent, too */
   bool io_failed, no_memory;
   char message[256];
 } job;
@@ -193,10 +194,11 @@ abbe_result abbe_png_write(const char *path, const abbe_image *image, int bits, 
  * whatever kind is unpacked in vain. */
 static void choose_chunks(const job *j) {
   static const png_byte known[] = "bKGD\0eXIf\0hIST\0iTXt\0oFFs\0pCAL\0pHYs\0sBIT\0sCAL\0"
-                                  "sPLT\0sTER\0tEXt\0tIME\0tRNS\0zTXt";
+                                  "sPLT\0sTER\0tEXt\0tIME\0zTXt\0tRNS";
   static const png_byte cicp[] = "cICP"; /* younger than libpng 1.6.45 */
   png_set_keep_unknown_chunks(j->png, PNG_HANDLE_CHUNK_NEVER, NULL, 0);
-  png_set_keep_unknown_chunks(j->png, PNG_HANDLE_CHUNK_NEVER, known, sizeof known / 5);
+  png_set_keep_unknown_chunks(j->png, PNG_HANDLE_CHUNK_NEVER, known,
+                              (int)sizeof known / 5 - j->over_white);
   png_set_keep_unknown_chunks(j->png, PNG_HANDLE_CHUNK_ALWAYS, cicp, 1);
   png_set_chunk_cache_max(j->png, 8);
   png_set_chunk_malloc_max(j->png, MAX_CHUNK_BYTES);
@@ -217,17 +219,21 @@ static bool read_header(job *j, double file_size) {
   png_set_palette_to_rgb(j->png);
   png_set_expand_gray_1_2_4_to_8(j->png);
   png_set_gray_to_rgb(j->png);
-  png_set_strip_alpha(j->png);
+  if (j->over_white)
+    png_set_tRNS_to_alpha(j->png);
+  else
+    png_set_strip_alpha(j->png);
   png_set_interlace_handling(j->png);
   png_read_update_info(j->png, j->info);
   j->bits = png_get_bit_depth(j->png, j->info);
   j->samples = png_get_channels(j->png, j->info);
-  if (j->samples != 3) png_error(j->png, "its pixels cannot be expanded to red, green and blue");
+  if (j->samples != 3 && !(j->over_white && j->samples == 4))
+    png_error(j->png, "its pixels cannot be expanded to red, green and blue");
   return true;
 }
 
 static bool read_rows(job *j) {
-  size_t stride = (size_t)j->width * 3 * (size_t)(j->bits / 8);
+  size_t stride = (size_t)j->width * (size_t)j->samples * (size_t)(j->bits / 8);
   j->rows = malloc(stride * j->height);
   j->row = malloc(j->height * sizeof *j->row);
   j->no_memory = j->no_memory || j->rows == NULL || j->row == NULL;
@@ -239,11 +245,24 @@ static bool read_rows(job *j) {
   return true;
 }
 
+static float sample_of(const job *j, size_t i) {
+  return j->bits == 16 ? (float)(256 * j->rows[2 * i] + j->rows[2 * i + 1]) / 65535.0f
+                       : (float)j->rows[i] / 255.0f;
+}
+
 static void take_samples(const job *j, abbe_image *image) {
-  size_t count = image->width * image->height * 3;
-  for (size_t i = 0; i < count; i++)
-    image->data[i] = j->bits == 16 ? (float)(256 * j->rows[2 * i] + j->rows[2 * i + 1]) / 65535.0f
-                                   : (float)j->rows[i] / 255.0f;
+  const size_t count = image->width * image->height, samples = (size_t)j->samples;
+  for (size_t i = 0; i < 3 * count; i++) image->data[i] = sample_of(j, i / 3 * samples + i % 3);
+}
+
+/* Straight alpha, as PNG's is, in light and not in its code. */
+static void lay_over_white(const job *j, abbe_image *image) {
+  for (size_t i = 0; i < 3 * image->width * image->height && j->samples == 4; i++) {
+    const double alpha = (double)sample_of(j, i / 3 * 4 + 3);
+    if (alpha < 1)
+      image->data[i] = (float)abbe_srgb_encoded(
+          1 + alpha * (abbe_rgb_encoding_light(image->curve, (double)image->data[i]) - 1));
+  }
 }
 
 /* The code points of a display's RGB in full range; false for others. */
@@ -315,24 +334,33 @@ static abbe_result read_image(job *j, double file_size, abbe_image *out, abbe_er
   }
   if (result == ABBE_OK) result = abbe_image_make(j->width, j->height, 3, names, out, error);
   if (result == ABBE_OK) take_samples(j, out);
-  free(j->rows);
-  j->rows = NULL;
   if (result == ABBE_OK) result = become_srgb(j, out, error);
+  if (result == ABBE_OK) lay_over_white(j, out);
+  free(j->rows);
   if (result != ABBE_OK) abbe_image_free(out);
   png_destroy_read_struct(&j->png, &j->info, NULL);
   free(j->row);
   return result;
 }
 
-abbe_result abbe_png_read(const char *path, abbe_image *out, abbe_error *error) {
+static abbe_result read_file(const char *path, bool over_white, abbe_image *out,
+                             abbe_error *error) {
   *out = (abbe_image){0};
   FILE *file;
   size_t size = 0;
   ABBE_TRY(abbe_file_open(path, &file, &size, error));
-  job j = {.path = path, .file = file};
+  job j = {.path = path, .file = file, .over_white = over_white};
   abbe_result result = read_image(&j, (double)size, out, error);
   fclose(file);
   return result;
+}
+
+abbe_result abbe_png_read(const char *path, abbe_image *out, abbe_error *error) {
+  return read_file(path, false, out, error);
+}
+
+abbe_result abbe_png_read_over_white(const char *path, abbe_image *out, abbe_error *error) {
+  return read_file(path, true, out, error);
 }
 
 /* ---- its text ---- */

@@ -28,5 +28,7 @@ abbe_result abbe_png_read_text(const char *path, char **out, abbe_error *error);
  * pixels that are too many for the file and for a cICP that is none of an SDR display's RGB,
  * ABBE_COLOUR for a profile that cannot be used. */
 abbe_result abbe_png_read(const char *path, abbe_image *out, abbe_error *error);
+/* The same, and what is transparent is laid over white paper, in light. */
+abbe_result abbe_png_read_over_white(const char *path, abbe_image *out, abbe_error *error);
 
 #endif

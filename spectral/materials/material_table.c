@@ -239,6 +239,12 @@ static abbe_result not_found(const abbe_material_table *table, const char *name,
              table->count - shown);
   const char *near = abbe_nearest_word(name, names, table->count);
   free(names);
+  if (strncasecmp(name, "white-gold", 10) == 0 &&
+      abbe_material_table_find(table, "rhodium", &(const abbe_material *){0}, NULL) == ABBE_OK)
+    return abbe_error_set(error, ABBE_NOT_FOUND,
+                          "the table '%.200s' has no material '%.60s', for white gold is worn "
+                          "plated: take 'rhodium'",
+                          table->path, name);
   if (near != NULL)
     return abbe_error_set(error, ABBE_NOT_FOUND,
                           "the table '%.200s' has no material '%.60s'; did you mean '%s'?",

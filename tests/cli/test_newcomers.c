@@ -71,6 +71,8 @@ static const struct wrong {
      2},
     {QUARTZ RENDER "round.asc --with ring --metal ruby", "'ruby' is no metal; a ring is of one", 1},
     {QUARTZ RENDER "round.asc --with ring --metal platinium", "did you mean 'platinum'?", 1},
+    {QUARTZ RENDER "round.asc --with ring --metal white-gold-18k",
+     "no material 'white-gold-18k', for white gold is worn plated: take 'rhodium'", 1},
     {QUARTZ RENDER "round.asc round.asc --with ring", "a ring holds one stone, not 2", 1},
     {QUARTZ RENDER "round.asc --save-scene round.asc",
      "would be written over the argument 'round.asc', which is read; name another file", 2},

@@ -299,6 +299,9 @@ static void write_stating(const double rgb[3], void (*say)(png_structp png, png_
 static void say_nothing(png_structp png, png_infop info) {
   (void)png, (void)info;
 }
+static void say_green_is_clear(png_structp png, png_infop info) {
+  png_set_tRNS(png, info, NULL, 0, &(png_color_16){.green = 65535});
+}
 static void say_srgb(png_structp png, png_infop info) {
   png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
 }
@@ -344,6 +347,24 @@ static void say_nobody_knows(png_structp png, png_infop info) {
 }
 static void say_pq(png_structp png, png_infop info) {
   say_cicp(png, info, 9, 16);
+}
+
+/* Half of black lets half of white through, in light; of what is clear the colour does not matter,
+ * whether alpha or a key says so. */
+TEST(what_is_transparent_lies_on_white_paper) {
+  static const float in[] = {0, 0, 0, 0.5f, 1, 0, 0, 0, 0.2f, 1, 0.5f, 1};
+  static const double out[] = {0.7354, 0.7354, 0.7354, 1, 1, 1, 0.2, 1, 0.5};
+  OWNED(abbe_image, image) = gradient(3, 1, 4);
+  memcpy(image.data, in, sizeof in);
+  for (int bits = 8; bits <= 16; bits += 8) {
+    OK(abbe_png_write(path, &image, bits, &error));
+    MADE(abbe_image, back, abbe_png_read_over_white(path, &back, &error));
+    assert_int_equal(back.channels, 3);
+    for (size_t i = 0; i < 9; i++) assert_near((double)back.data[i], out[i], 4e-3);
+  }
+  write_stating((const double[3]){0, 1, 0}, say_green_is_clear);
+  MADE(abbe_image, keyed, abbe_png_read_over_white(path, &keyed, &error));
+  for (size_t i = 0; i < 3; i++) assert_true(keyed.data[i] == 1);
 }
 
 TEST(the_colour_is_heeded) {
