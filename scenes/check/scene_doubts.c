@@ -147,18 +147,22 @@ static bool hides(const table *t, const double from[3], const double to[3]) {
   return is_over(t, at);
 }
 
-/* Whether it stands between the point and all corners of the bounds of all that refracts and
+/* Whether it stands between the light and all corners of the bounds of all that refracts and
  * reflects. */
-static bool hides_all(const abbe_scene *scene, const table *t, const double from[3]) {
+static bool hides_all(const abbe_scene *scene, const table *t, const abbe_light *light) {
+  static const double FAR = 1e6; /* a sun is there */
   size_t hidden = 0;
   for (size_t i = 0; i < scene->object_count; i++)
     for (int corner = 0; corner < 8 && is_shown(&scene->object[i]); corner++, hidden++) {
       const abbe_object *o = &scene->object[i];
-      double p[3], at[3];
+      double p[3], at[3], from[3];
       middle(o, at);
       for (int k = 0; k < 3; k++) p[k] = corner >> k & 1 ? o->max[k] : o->min[k];
       for (int k = 0; k < 3; k++)
         p[k] += 1e-3 * (at[k] - p[k]); /* what stands on it is not in it */
+      for (int k = 0; k < 3; k++)
+        from[k] = light->kind == ABBE_LIGHT_DIRECTIONAL ? p[k] - FAR * light->direction[k]
+                                                        : light->position[k];
       if (!hides(t, from, p)) return false;
     }
   return hidden > 0;
@@ -170,12 +174,10 @@ static void find_hidden_lamps(const abbe_scene *scene, abbe_scene_doubts *out) {
       const abbe_light *light = &scene->light[i];
       const abbe_object *receiver = &scene->object[k];
       bool hidden = false;
-      if (light->kind == ABBE_LIGHT_DIRECTIONAL || is_shown(receiver) ||
-          receiver->exact.kind != ABBE_EXACT_PARALLELOGRAMS)
-        continue;
+      if (is_shown(receiver) || receiver->exact.kind != ABBE_EXACT_PARALLELOGRAMS) continue;
       for (size_t j = 0; j < receiver->exact.count && !hidden; j++) {
         table t;
-        hidden = table_of(receiver, j, &t) && hides_all(scene, &t, light->position);
+        hidden = table_of(receiver, j, &t) && hides_all(scene, &t, light);
       }
       if (!hidden) continue;
       doubt(out,

@@ -24,6 +24,10 @@ TEST(what_is_hardly_meant_is_said) {
       {EYE
        "lights:\n- {name: low, kind: point, position: [0, 0, -0.5], intensity: 1}\n" FLOOR STONE(
            "stand: [0, 0, 0]"),
+       "the light 'low' reaches nothing that refracts or reflects: 'floor' stands between"},
+      {EYE
+       "lights:\n- {name: low, kind: directional, direction: [0.3, 0, 1], irradiance: 1}\n" FLOOR
+           STONE("stand: [0, 0, 0]"),
        "the light 'low' reaches nothing that refracts or reflects: 'floor' stands between"}};
   for (size_t i = 0; i < sizeof doubtful / sizeof *doubtful; i++) {
     abbe_scene_doubts doubts;
