@@ -295,9 +295,11 @@ static const struct {
     {"return", "Light return",
      "Of the light from above this much comes back, your head's shadow left out."},
     {"iso", "Brightness", "The same, with light from where your head is, too."},
+    {"absorbed", "Kept by its colour",
+     "Share of the light that the stone itself takes: hardly any in a clear one, most in a deep "
+     "red."},
     {"area_window", "Windows", "Share of the face through which you look at what lies below."},
-    {"area_extinct", "Dark areas",
-     "Share of the face that mostly shows your head's shadow or has lost its light."},
+    {"area_extinct", "Dark areas", "Share of the face that mostly shows your head's shadow."},
     {"contrast", "Contrast",
      "How strongly bright and dark alternate: a stone without any looks flat."},
     {"fire", "Fire", "Share of the face in colour under small lamps, while the stone rocks."},
@@ -315,6 +317,8 @@ static bool find_number(const abbe_gem_view *v, const char *name, abbe_gem_numbe
     *out = abbe_gem_view_amount(v, ABBE_GEM_RETURN);
   else if (strcmp(name, "iso") == 0)
     *out = abbe_gem_view_amount(v, ABBE_GEM_ISO);
+  else if (strcmp(name, "absorbed") == 0)
+    *out = abbe_gem_view_amount(v, ABBE_GEM_ABSORBED);
   else if (strcmp(name, "area_window") == 0)
     *out = areas.window;
   else if (strcmp(name, "area_extinct") == 0)
@@ -353,7 +357,7 @@ static void put_numbers(abbe_sheet *s, const abbe_gem_report_facts *f, double y)
       abbe_gem_judgement_row ideal = row[i];
       if (find_number(&f->page->ideal, row[i].name, &ideal.number))
         put_value(s, right, y + 15, false, &ideal);
-      y += 26;
+      y += 24;
     }
   abbe_sheet_line(s, MARGIN, y, right, y, 0.85);
 }

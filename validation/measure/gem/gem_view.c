@@ -204,10 +204,15 @@ abbe_gem_number abbe_gem_view_amount(const abbe_gem_view *v, abbe_gem_amount amo
 
 enum { BRILLIANT, WINDOW, EXTINCT, AREAS };
 
+/* Of the light that the stone's colour leaves: a deep red one takes most of what the eye weighs,
+ * and has its windows all the same. */
 static int greatest(const float amount[AMOUNTS]) {
   const float back = amount[ABBE_GEM_RETURN], leak = amount[ABBE_GEM_DOWN];
-  const float dark = amount[ABBE_GEM_HEAD] + amount[ABBE_GEM_ABSORBED] + amount[ABBE_GEM_LEFT];
-  return back >= leak && back >= dark ? BRILLIANT : leak >= dark ? WINDOW : EXTINCT;
+  const float dark = amount[ABBE_GEM_HEAD] + amount[ABBE_GEM_LEFT];
+  return !(back + leak > 0)             ? EXTINCT
+         : back >= leak && back >= dark ? BRILLIANT
+         : leak >= dark                 ? WINDOW
+                                        : EXTINCT;
 }
 
 static double is_greatest(const float *amount, const double about[2]) {

@@ -53,9 +53,10 @@ abbe_gem_number abbe_gem_view_amount(const abbe_gem_view *view, abbe_gem_amount 
 abbe_gem_number abbe_gem_view_at(const abbe_gem_view *view, abbe_gem_amount amount,
                                  size_t wavelength);
 
-/* Shares of the silhouette's area, by which part of a place's light is the greatest: what returns,
- * what leaks (a window), or what comes from the head and is absorbed or left (extinction). They add
- * up to 1. Places are rays, and not pixels: so these do not depend on the grid. */
+/* Shares of the silhouette's area, by which part of a place's light that is not absorbed is the
+ * greatest: what returns, what leaks (a window), or what comes from the head and is left
+ * (extinction, as is a place where all is absorbed). They add up to 1. Places are rays, and not
+ * pixels: so these do not depend on the grid. */
 typedef struct abbe_gem_areas {
   abbe_gem_number brilliant, window, extinct;
 } abbe_gem_areas;

@@ -49,6 +49,29 @@ TEST(slab_absorbs_by_its_thickness) {
   abbe_spectrum_free(m.attenuation);
 }
 
+/* What the colour takes makes no window dark: the slab leaks more than the head is seen in it,
+ * until its colour takes all but what the upper face reflects. */
+TEST(colour_hides_no_window) {
+  static char name[] = "grey";
+  static const double nm[1] = {500}, per_m[] = {0, 60, 300, 2000, 1e6};
+  for (int i = 0; i < 5; i++) {
+    abbe_material m =
+        FIELDS(.name = name,
+               .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}},
+               .min_nm = 300, .max_nm = 800);
+    OK(abbe_spectrum_make(nm, &per_m[i], 1, ABBE_INTERPOLATION_LINEAR, &m.attenuation, &error));
+    judged j = judged_make(slab, &m, 3);
+    abbe_gem_view view = judged_view(&j, &small);
+    abbe_gem_areas areas;
+    OK(abbe_gem_view_areas(&view, &areas, &error));
+    assert_near(areas.window.value, i < 3, 1e-12);
+    assert_near(areas.extinct.value, i >= 3, 1e-12);
+    abbe_gem_view_free(&view);
+    judged_free(&j);
+    abbe_spectrum_free(m.attenuation);
+  }
+}
+
 /* A right angle sends light back where it came from, and all of it where both faces reflect
  * totally. */
 TEST(roof_of_a_right_angle_is_all_blue) {
