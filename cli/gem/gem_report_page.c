@@ -296,8 +296,7 @@ static const struct {
      "Of the light from above this much comes back, your head's shadow left out."},
     {"iso", "Brightness", "The same, with light from where your head is, too."},
     {"absorbed", "Kept by its colour",
-     "Share of the light that the stone itself takes: hardly any in a clear one, most in a deep "
-     "red."},
+     "Share of the light that the stone takes: the deeper its colour, the more."},
     {"area_window", "Windows", "Share of the face through which you look at what lies below."},
     {"area_extinct", "Dark areas", "Share of the face that mostly shows your head's shadow."},
     {"contrast", "Contrast",
