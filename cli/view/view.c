@@ -278,6 +278,10 @@ static abbe_result view(view_options *o, abbe_error *error) {
   const char *path = abbe_shipped_find(o->scene, shipped, sizeof shipped);
   abbe_studio studio = o->changes.studio;
   studio.more = o->changes.more;
+  if (o->width >= ABBE_VIEW_PANEL_WIDTH + 16) { /* stones are framed for what the panel leaves */
+    studio.columns = o->width - ABBE_VIEW_PANEL_WIDTH;
+    studio.rows = o->height;
+  }
   abbe_caustic_volume volume = {0};
   const abbe_view_app_desc desc = {.document = &document,
                                    .volume_path = o->volume,

@@ -83,7 +83,8 @@ TEST(a_design_is_recut) {
   run_clears("rm cut.yaml step-square.asc");
 }
 
-/* Side by side; each is judged, and the report is of the first as it is cut now. */
+/* Side by side and both in view, however narrow; each is judged and dragged by itself, and the
+ * report is of the first as it is cut now. */
 TEST(two_stones_and_a_report) {
   run_must("cp \"$house\"/scenes/designs/step-square.asc a.asc && cp \"$house\"/scenes/designs/"
            "brilliant-quartz.asc b.asc");
@@ -91,11 +92,14 @@ TEST(two_stones_and_a_report) {
       "printf '%s\\n' 'wait moving' 'slide \"stone 1 crown angle\" 0.4' 'wait balanced' 'wait "
       "rest' 'assert "
       "light_return > 0.1' 'assert return_by_pavilion != 0' 'wheel \"stone 1 pavilion angle\" 0' "
-      "'assert hinted = 2' 'wheel 20,20 0' 'assert hinted = 0' 'click report' 'wait rest' "
-      "'assert note contains k-report.pdf' > "
+      "'assert hinted = 2' 'wheel 20,20 0' 'assert hinted = 0' "
+      "'click report' 'wait rest' 'assert note contains k-report.pdf' "
+      "'drag \"handle:stone 2\" 30,160' 'assert \"objects.stone 2.transform\" contains translate' "
+      "'drag \"handle:stone 1\" 30,60 control' 'assert \"objects.stone 1.transform\" contains "
+      "rotate' 'assert undo = 3' > "
       "a.txt");
   run_must("\"$abbe\" view a.asc b.asc --material quartz --photons 16 --map 64 --wavelengths 3 "
-           "--last balanced --size 380x200 --keep k --script a.txt");
+           "--last balanced --size 440x200 --keep k --script a.txt");
   run_must("grep -q %%EOF k-report.pdf && \"$abbe\" gem info k-cut.asc > lines && test -s k.png");
   /* a design of the report's own name is not cut over */
   run_must(
