@@ -226,6 +226,10 @@ typedef struct abbe_material_range {
 abbe_result abbe_material_range_make(const abbe_material *material, double min_nm, double max_nm,
                                      abbe_material_range *out, abbe_error *error);
 
+/* Whether an attenuation, 1/m, loses anything over a hundred times what is there: less than that is
+ * a share of 1 in the shaders' floats. */
+bool abbe_absorption_shows(const abbe_scene *scene, double per_m);
+
 /* How much light a convex faceted solid keeps inside, exit by exit.
  *
  * Rays of a grid over the solid, from a light or from the camera, followed in double precision at

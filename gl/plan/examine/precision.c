@@ -3,6 +3,7 @@
 #include "base/maths.h"
 #include "scenes/view/view.h"
 
+#include <float.h>
 #include <math.h>
 
 /* A float keeps 2^-24 of a distance. A refractor's shape is safe at 2^16 times its radius, where
@@ -144,4 +145,11 @@ abbe_result abbe_precision_check(const abbe_scene *scene, const abbe_plan *plan,
                    ? check_cube(scene, plan, i, error)
                    : check_one_view(scene, plan, &scene->light[i], error));
   return ABBE_OK;
+}
+
+bool abbe_absorption_shows(const abbe_scene *scene, double per_m) {
+  double low[3], high[3], size[3];
+  if (!(per_m > 0) || !abbe_scene_bounds(scene, true, true, low, high)) return per_m > 0;
+  abbe_vector_subtract(high, low, size);
+  return 100 * per_m * abbe_vector_length(size) > 0.25 * (double)FLT_EPSILON;
 }

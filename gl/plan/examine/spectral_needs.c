@@ -253,8 +253,8 @@ abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_mate
   ABBE_TRY(abbe_material_range_make(material, min, max, &range, error));
   /* as floats: the shaders hold it so */
   if ((float)range.least_n != (float)range.most_n) plan->dispersive = true;
-  if (range.least_per_m != range.most_per_m) plan->tinting = true;
-  if (range.most_per_m > 0) plan->absorbing = true;
+  if (abbe_absorption_shows(scene, range.most_per_m)) plan->absorbing = true;
+  if (plan->absorbing && range.least_per_m != range.most_per_m) plan->tinting = true;
   if (abbe_material_is_crystal(material)) plan->crystals = true;
   if (abbe_material_is_biaxial(material)) plan->biaxial = true;
   if (abbe_material_is_pleochroic(material)) plan->pleochroic = true;

@@ -136,11 +136,11 @@ static double left_of(bool far, bool ball, double x) {
 TEST(convex_solids_and_balls_shade_them_softly) {
   static const struct {
     bool far, ball;
-    double worst, mean;
+    double worst, mean, step;
   } row[] = {
-      {false, false, 0.07, 0.02}, /* eight points have their middle 4 % of the radius aside */
-      {true, false, 0.03, 0.01},
-      {true, true, 0.03, 0.01},
+      {false, false, 0.07, 0.02, 0.03}, /* eight points have their middle 4 % of the radius aside */
+      {true, false, 0.03, 0.01, 0.06},
+      {true, true, 0.03, 0.01, 0.06},
   };
   for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
     double bare[STRIP], left[STRIP], worst = 0, mean = 0, step = 0;
@@ -156,7 +156,7 @@ TEST(convex_solids_and_balls_shade_them_softly) {
       if (i > 0) step = fmax(step, fabs(left[i] - left[i - 1]));
     }
     print_message("%zu: at most %.4f off, in the mean %.4f; steps of %.4f\n", k, worst, mean, step);
-    assert_true(worst < row[k].worst && fabs(mean) < row[k].mean && step < 0.06);
+    assert_true(worst < row[k].worst && fabs(mean) < row[k].mean && step < row[k].step);
   }
 }
 
