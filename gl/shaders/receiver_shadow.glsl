@@ -61,7 +61,7 @@ float sphere_lit(int light, vec4 sphere, vec3 p, vec3 from, vec3 d, float distan
   float along = dot(p - sphere.xyz, d), r = LIGHT(light).cube.z * along;
   if (int(LIGHT(light).position.w) != 2) r /= max(distance_m - along, 1e-6 * distance_m);
   if (r > 0.0) {
-    float ball = sphere.w / r, off = max(length(p - sphere.xyz - along * d) / r, abs(ball - 1.0));
+    float ball = sphere.w / r, off = max(length(p - sphere.xyz - along * d) / r, max(abs(ball - 1.0), 1e-6));
     if (off >= ball + 1.0) return 1.0;
     float x = (off * off + 1.0 - ball * ball) / (2.0 * off), y = off - x;
     return 1.0 - clamp((acos(clamp(x, -1.0, 1.0)) - off * sqrt(max(1.0 - x * x, 0.0)) +
