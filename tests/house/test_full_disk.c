@@ -1,5 +1,6 @@
 /* Every kind of file that the library writes, on a disk that is full after each byte, and with each
  * call on the way failing: the old file or the new one, nothing besides, and a sentence. */
+#include "tests/brick.h"
 #include "tests/check.h"
 #include "tests/faults/disk.h"
 #include "tests/fontconfig.h"
@@ -254,14 +255,6 @@ TEST(each_call_failing) {
 
 /* ---- set-up ---- */
 
-static const char text[] =
-    "materials: table.yaml\n"
-    "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05], size: [3, 2]}\n"
-    "lights:\n- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: 1}\n"
-    "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5}\n"
-    "- {name: brick, shape: box, size: [0.1, 0.08, 0.06], transform: [{translate: [0, 0, 0.2]}],\n"
-    "   material: crown}\n";
-
 static void setup(void) {
   static const char *const names[] = {"R", "G", "B"};
   const abbe_trace_desc desc = {
@@ -272,7 +265,8 @@ static void setup(void) {
   abbe_result result = abbe_image_make(7, 5, 3, names, &image, &error);
   for (size_t i = 0; i < 7 * 5 * 3 && result == ABBE_OK; i++) image.data[i] = 0.01f * (float)i;
   if (result == ABBE_OK)
-    result = abbe_scene_parse(text, sizeof text - 1, PARTS "f.yaml", NULL, &scene, &error);
+    result =
+        abbe_scene_parse(brick_scene, sizeof brick_scene - 1, PARTS "f.yaml", NULL, &scene, &error);
   if (result == ABBE_OK) result = abbe_tracer_make(&scene, &desc, &tracer, &error);
   if (result == ABBE_OK) result = abbe_tracer_pass(tracer, NULL, &error);
   if (result != ABBE_OK) fprintf(stderr, "%s\n", error.text);

@@ -1,4 +1,5 @@
 /* Checkpoints of a trace. Input: choices and edits of a whole one (edits.h). */
+#include "tests/brick.h"
 #include "tests/fuzz/edits.h"
 #include "tests/fuzz/memory_file.h"
 
@@ -13,21 +14,14 @@ static abbe_scene scene;
 static abbe_tracer *tracer;
 static edited kept;
 
-static const char text[] =
-    "materials: table.yaml\n"
-    "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05], size: [3, 2]}\n"
-    "lights:\n- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: 1}\n"
-    "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5}\n"
-    "- {name: brick, shape: box, size: [0.1, 0.08, 0.06], transform: [{translate: [0, 0, 0.2]}],\n"
-    "   material: crown}\n";
-
 static void prepare(void) {
   abbe_error error = {0};
   const abbe_trace_desc desc = {
       .width = 3, .height = 2, .map_width = 4, .map_height = 4, .photons = 64, .threads = 1};
   static const char path[] = "fuzz_checkpoint.whole";
-  FUZZ_PROMISE(abbe_scene_parse(text, sizeof text - 1, ABBE_SOURCE_DIR "/tests/fuzz/parts/f.yaml",
-                                NULL, &scene, &error) == ABBE_OK);
+  FUZZ_PROMISE(abbe_scene_parse(brick_scene, sizeof brick_scene - 1,
+                                ABBE_SOURCE_DIR "/tests/fuzz/parts/f.yaml", NULL, &scene,
+                                &error) == ABBE_OK);
   FUZZ_PROMISE(abbe_tracer_make(&scene, &desc, &tracer, &error) == ABBE_OK);
   FUZZ_PROMISE(abbe_tracer_pass(tracer, NULL, &error) == ABBE_OK);
   FUZZ_PROMISE(abbe_checkpoint_save(tracer, path, &error) == ABBE_OK);

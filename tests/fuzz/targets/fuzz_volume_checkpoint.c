@@ -2,6 +2,7 @@
  * choices and edits of a whole one (edits.h). How much of each cell the object leaves free is not
  * measured, which would be nearly all of the time.
  */
+#include "tests/brick.h"
 #include "tests/fuzz/edits.h"
 #include "tests/fuzz/memory_file.h"
 
@@ -23,14 +24,6 @@ static abbe_volume_fill_desc desc = {.object = 1,
                                      .threads = 1,
                                      .checkpoint = place,
                                      .checkpoint_s = 1000};
-
-static const char text[] =
-    "materials: table.yaml\n"
-    "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05], size: [3, 2]}\n"
-    "lights:\n- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: 1}\n"
-    "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5}\n"
-    "- {name: brick, shape: box, size: [0.1, 0.08, 0.06], transform: [{translate: [0, 0, 0.2]}],\n"
-    "   material: crown}\n";
 
 abbe_result __wrap_abbe_volume_space_measure(const abbe_geometry *geometry,
                                              const abbe_volume_region *region,
@@ -54,8 +47,9 @@ static void prepare(void) {
   abbe_error error = {0};
   abbe_caustic_volume volume;
   abbe_volume_fill_statistics statistics;
-  FUZZ_PROMISE(abbe_scene_parse(text, sizeof text - 1, ABBE_SOURCE_DIR "/tests/fuzz/parts/f.yaml",
-                                NULL, &scene, &error) == ABBE_OK);
+  FUZZ_PROMISE(abbe_scene_parse(brick_scene, sizeof brick_scene - 1,
+                                ABBE_SOURCE_DIR "/tests/fuzz/parts/f.yaml", NULL, &scene,
+                                &error) == ABBE_OK);
   desc.progress = stop_halfway;
   FUZZ_PROMISE(abbe_volume_fill(&scene, &desc, &volume, &statistics, &error) == ABBE_CANCELLED);
   desc.progress = NULL;
